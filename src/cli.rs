@@ -62,8 +62,8 @@ pub struct Cli {
     /// for story; /var/lib/relayrig/relayrig.db with --config /etc/relayrig by default]
     #[arg(long, global = true, value_name = "FILE")]
     pub db: Option<PathBuf>,
-    /// Log on stderr: off, error, warn, info, debug, trace, or a filter per module (warn,app=debug); the word json, alone
-    /// or beside a filter, makes it JSON lines [default: RUST_LOG, else info]
+    /// Log on stderr: off, error, warn, info, debug, trace, or a filter per module (warn,app=debug); the word json,
+    /// alone or beside a filter, makes it JSON lines [default: RUST_LOG, else info]
     #[arg(long, global = true, value_name = "FILTER")]
     pub log: Option<String>,
     /// What to do
@@ -81,7 +81,7 @@ pub enum Command {
     Serve(serve::ServeArgs),
     /// Run a lot, on a rig or on the simulated one
     Run(Box<run::RunArgs>),
-    /// Factors of the rig from its standards and reference parts, or their verification
+    /// Calibrate a rig by its standards and reference parts, or verify its calibration
     Calibrate(calibrate::CalibrateArgs),
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
@@ -89,23 +89,23 @@ pub enum Command {
     /// Play a script of troubles and orders on the simulated rig and print the events
     #[cfg(feature = "sim")]
     Story(story::StoryArgs),
-    /// Reproducible figures, each beside its bar
+    /// Reproducible figures, each with the limit (bar) that it must meet
     Study(study::StudyArgs),
     /// Write a configuration of your own, with comments, in a new directory
     Init(init::InitArgs),
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
     Config(config::Args),
-    /// Whether this computer keeps the rig's time
+    /// Test how late this computer wakes the rig
     #[command(subcommand)]
     Host(host::Args),
-    /// What is wrong with this installation, and what to do
+    /// Find what is wrong with this installation, and what to do
     Doctor(doctor::DoctorArgs),
     /// Find modules, send one command, watch a line
     Bus(bus::BusArgs),
     /// SCPI instruments: find them, send one command, watch a link, try a profile
     Instrument(instrument::InstrumentArgs),
-    /// Collision answers for a scene, no rig
+    /// Tell whether moves in a scene collide; needs no rig
     Check(check::CheckArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
@@ -124,7 +124,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the history file of a command that has its own; `None` for the history of the rig.
+    /// Returns the default history file of a command that does not use that of the rig; `None` for every other command.
     const fn own_history(&self) -> Option<&'static str> {
         match self {
             #[cfg(feature = "sim")]
@@ -135,8 +135,8 @@ impl Command {
         }
     }
 
-    /// Returns the configuration of a command that has its own; `None` for that of the rig. A demo does not read the
-    /// directory `config`, so that it is the same everywhere.
+    /// Returns the built-in configuration for a command that uses it by default; `None` for every other command. A demo
+    /// does not read the directory `config`, so that it is the same everywhere.
     fn own_config(&self) -> Option<Folder> {
         match self {
             #[cfg(feature = "sim")]
@@ -152,7 +152,7 @@ impl Command {
 }
 
 impl Cli {
-    /// Runs the command. An error is bad input; the caller prints it once.
+    /// Runs the command. Every error is bad input; the caller prints it once.
     pub fn execute(self) -> anyhow::Result<Exit> {
         let config = self.config.map(Folder::Directory);
         let config = config.or_else(|| self.command.own_config());
@@ -215,7 +215,7 @@ fn password_of(who: &str) -> anyhow::Result<String> {
     Ok(line.trim_end_matches(['\r', '\n']).to_owned())
 }
 
-/// Returns `done`, or `closed` when its error is a closed pipe, which is a normal end.
+/// Returns `done`, but `closed` when `done` is the error of a closed pipe, which is a normal end.
 fn unless_pipe_closed<T>(done: anyhow::Result<T>, closed: T) -> anyhow::Result<T> {
     let left = |cause: &(dyn std::error::Error + 'static)| {
         cause

@@ -107,8 +107,8 @@ fn check(directive: &str) -> anyhow::Result<()> {
     anyhow::bail!("--log: found {found:?}, expected {expected}")
 }
 
-/// Returns true when stderr is the stream that `JOURNAL_STREAM` names. A terminal inherits the variable from its session,
-/// but has another stderr.
+/// Returns true when stderr is the stream that `JOURNAL_STREAM` names. A terminal inherits the variable from its
+/// session, but has another stderr.
 fn is_journal() -> bool {
     let stderr = std::fs::metadata("/proc/self/fd/2");
     match (std::env::var("JOURNAL_STREAM"), stderr) {

@@ -1,4 +1,4 @@
-//! Modules on a bench: fixed signals at the terminals of one line, for any DCON client.
+//! Modules on a bench: one line of modules with fixed signals at their terminals, for any DCON client.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,7 +27,8 @@ const LATENCY_MS: (f64, f64) = (2.0, 10_000.0);
 /// Builds the bench of a file.
 ///
 /// # Errors
-/// Fails when the file cannot be read, a model has no such key, a value does not fit, or a fault has an unknown target.
+/// Fails when the file cannot be read, has a key that the model does not know or a value that does not fit, or when a
+/// fault has an unknown target.
 pub fn build(file: &Path, faults: LineFaults) -> Result<Rig, SimError> {
     built(&Table::of_file(file)?, faults)
 }
@@ -79,7 +80,7 @@ fn spec(number: usize, keys: Table) -> Result<ModuleSpec, ConfigError> {
     })
 }
 
-/// Builds a module; refuses keys that its model does not read.
+/// Builds a module; refuses keys that its model does not know.
 fn module(spec: &ModuleSpec, baud: u32, tolerances: &Tolerances) -> Result<Module, ConfigError> {
     let commissioning = Commissioning {
         baud: setting::baud(&spec.settings)?.unwrap_or(baud),

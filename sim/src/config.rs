@@ -120,7 +120,8 @@ pub struct References {
     pub counter_clock_hz: f64,
 }
 
-/// References of a rig whose file has no `[reference]`: no test reads them, only the counter clock is used.
+/// References of a rig whose file has no `[reference]`: only the counter clock is in use, because no test reads the
+/// others.
 impl Default for References {
     fn default() -> Self {
         Self {
@@ -144,26 +145,26 @@ pub const READER: &str = "serial_reader";
 pub struct CodeReader {
     /// Bits per second.
     pub baud: u32,
-    /// What it sends when it finds no code; empty: nothing.
+    /// Text that the reader sends when it finds no code; empty when it then sends nothing.
     pub no_code: String,
 }
 
 /// Content of `rig.toml` that the simulated rig needs.
 #[derive(Debug, Clone)]
 pub struct RigFile {
-    /// Serial lines in order of name, then that of the code reader.
+    /// Serial lines in order of name, then the line of the code reader.
     pub lines: Vec<LineSpec>,
     /// Code reader, if the rig has one.
     pub code_reader: Option<CodeReader>,
     /// Modules in order of identifier.
     pub modules: Vec<ModuleSpec>,
-    /// Time after the last host OK at which a watched module sets its safe outputs, milliseconds.
+    /// Time after the last host OK until a watched module sets its safe outputs, milliseconds.
     pub host_watchdog_ms: f64,
     /// Analog inputs by point name.
     pub analog_in: BTreeMap<String, Terminal>,
     /// Analog outputs by point name.
     pub analog_out: BTreeMap<String, Terminal>,
-    /// Ranges of the coil supply; empty for a rig with only one.
+    /// Ranges of the coil supply; empty for a supply with one fixed range.
     pub supply_ranges: Vec<SupplyRange>,
     /// Digital inputs by point name.
     pub digital_in: BTreeMap<String, Terminal>,

@@ -9,7 +9,7 @@
 /// Carriage return, which ends every frame in both directions.
 pub const CR: u8 = b'\r';
 
-/// Longest request or reply that is kept, characters without CR; longer text is line noise.
+/// Greatest length of a request or reply, characters without CR; a receiver discards longer text as line noise.
 pub const LONGEST: usize = 64;
 
 /// Addressee of a request.

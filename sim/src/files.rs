@@ -1,4 +1,4 @@
-//! Configuration files of a rig: where they are, and how one is read.
+//! Configuration files of a rig: where they are, and how to read one.
 
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind};
@@ -10,7 +10,7 @@ use crate::table::Table;
 /// Configuration files of a rig.
 #[derive(Debug, Clone)]
 pub enum Files {
-    /// Those of a directory.
+    /// The files below this directory.
     Directory(PathBuf),
     /// Texts by name, for example `recipes/jzc-22f-012.toml`.
     Texts(BTreeMap<String, String>),

@@ -6,8 +6,8 @@
 //! | 03 | I-7033, hex | the same with module 2 |
 //! | 04, 05 | I-7080 | module (4 bits), channel (1 bit), time in steps of 64 us (27 bits) |
 //! | 06, 07 | I-7051 | module (4 bits), time in steps of 512 us (12 bits) |
-//! | 08, 09 | I-7043 | module (4 bits), a number of the host (12 bits); number 0 at power-on and when safe |
-//! | 0A, 0B | I-7021P, hex | the same |
+//! | 08, 09 | I-7043 | module (4 bits), a number that the host writes (12 bits); number 0 at power-on and when safe |
+//! | 0A, 0B | I-7021P, hex | as I-7043 |
 //!
 //! The module number is the address less one, except at analog inputs. Time at an analog input rises and falls as
 //! a triangle, so that the mean over a converter window equals the time within that window. The line also records
@@ -38,8 +38,8 @@ pub const WORD_STEP_US: u64 = 512;
 /// Step of the time that values of analog inputs carry, microseconds.
 pub const ANALOG_STEP_US: u64 = 16_000;
 
-/// Highest time code at an analog input, the top of the triangle. The lowest is 1, since a host reads the codes
-/// at the ends of the range as over and under range.
+/// Highest time code at an analog input, the top of the triangle. The lowest is 1: a host reads the codes at the ends
+/// of the range as under range and over range.
 const PEAK: u64 = 0x7FE;
 
 /// Latency of a module, microseconds: mean and standard deviation.
@@ -56,7 +56,7 @@ pub struct FingerprintLine {
     outputs: Outputs,
 }
 
-/// Number of changes that are kept per output; a transaction makes one or two.
+/// Number of changes that the history keeps per output; a transaction makes one or two.
 const CHANGES: usize = 16;
 
 /// Output words with the instant (microseconds) at which each appeared, oldest first.
@@ -144,7 +144,7 @@ impl FingerprintLine {
     }
 }
 
-/// Returns output word `number` with the mark of the module at `address`.
+/// Returns the output word with the mark of the module at `address` and the given number.
 pub const fn marked(address: u8, number: u16) -> u16 {
     (address as u16) << 12 | number & 0xFFF
 }
@@ -164,12 +164,12 @@ pub const fn origin_of_word(word: u16) -> u8 {
     (word >> 12) as u8
 }
 
-/// Returns the age of a digital input word at `now_us`, microseconds, modulo 2 s, to one step.
+/// Returns the age of a digital input word at `now_us`, microseconds, modulo 2 s; its resolution is [`WORD_STEP_US`].
 pub const fn age_of_word_us(word: u16, now_us: u64) -> u64 {
     ((now_us / WORD_STEP_US).wrapping_sub(word as u64) & 0xFFF) * WORD_STEP_US
 }
 
-/// Returns the distance between the time in an analog code and `at_us`, microseconds.
+/// Returns the time difference between an analog code and `at_us`, microseconds.
 pub fn distance_of_analog_us(code: u16, at_us: u64) -> u64 {
     u64::from(code & 0x7FF).abs_diff(up_and_down(at_us)) * ANALOG_STEP_US
 }
@@ -219,7 +219,7 @@ fn spec(address: u8) -> Result<ModuleSpec, ConfigError> {
     })
 }
 
-/// Signals at the terminals of the line, which identify module and channel.
+/// Signals at the terminals of the line; each identifies its module and channel.
 struct Fingerprints {
     now_us: u64,
     outputs: Outputs,
@@ -298,7 +298,7 @@ mod tests {
                     let code =
                         hex(&ask(&line, &format!("#{address:02X}{channel}"), now_us), 1) as u16;
                     assert_eq!(origin_of_analog(code), (address, channel));
-                    // A result is at most eight windows of 1/60 s, or three of 1/15 s, old; two steps of
+                    // A result is at most eight windows of 1/60 s, or three of 1/15 s, old; the bound adds two steps of
                     // tolerance.
                     assert!(distance_of_analog_us(code, now_us) <= 250_000, "{code:04X}");
                 }

@@ -1,8 +1,8 @@
-//! Journal of the outputs: every change of a digital output, every expiry of a host watchdog, every fault that
-//! strikes, every coil that is overdriven, every reply that this computer made late.
+//! Journal of the outputs: every change of a digital output, expiry of a host watchdog, fault that strikes, coil that
+//! is overdriven, and reply that this computer made late.
 //!
-//! The journal records at the terminals, between modules and world, and so holds the signals of the actuators. It
-//! is off until [`JournaledWorld::listen`].
+//! The journal records at the terminals, between modules and world, so that it holds the signals that the actuators
+//! get. It is off until [`JournaledWorld::listen`].
 
 use std::collections::BTreeMap;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -41,10 +41,10 @@ pub enum Entry {
         module: String,
         /// Rig time at which the last request arrived on any line, microseconds.
         last_request_us: u64,
-        /// Value of the outputs now: bits, or volts.
+        /// Value of the outputs after the expiry: bits, or volts.
         carries: f64,
     },
-    /// In real time, this computer made a line send its reply late.
+    /// This computer sent the reply of a line too late, in real time.
     Late {
         /// Rig time at which the reply was due, microseconds.
         t_us: u64,
@@ -53,7 +53,7 @@ pub enum Entry {
         /// How late the reply was, microseconds.
         late_us: u64,
     },
-    /// A coil is driven in a supply range above the commanded one.
+    /// A coil is driven while the supply is in a range above the commanded one.
     CoilOverdriven(Overdrive),
 }
 
@@ -144,7 +144,7 @@ impl JournaledWorld {
 
     fn send(&self, entry: Entry) {
         if let Some(listener) = &self.listener {
-            // A dropped receiver needs no further entries.
+            // When the receiver is gone, nobody needs further entries.
             let _ = listener.send(entry);
         }
     }

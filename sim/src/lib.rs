@@ -1,14 +1,15 @@
 //! The simulated rig: modules, mechanism and specimens of a relay tester, behind serial lines.
 //!
-//! A host sends bytes to a line and receives the bytes that real modules would send; physics behind the terminals
-//! determines their values. The controller shares nothing with this crate but bytes and the files in `config/`.
+//! A host sends bytes to a line and receives the bytes that real modules would send; the simulated physics behind the
+//! terminals determines the values in them. The controller shares nothing with this crate but bytes and the files in
+//! `config/`.
 //!
 //! | module | content, in reading order |
 //! |---|---|
 //! | [`terminal`] | screw terminals: the boundary between modules and world |
 //! | [`dcon`], [`module`], [`mod@line`] | the device side of the protocol, one file per family |
 //! | [`world`], [`config`], [`truth`] | interface board, mechanism and specimens, with their true values |
-//! | [`rig`] | lines, modules and world together, from event to event |
+//! | [`rig`] | lines, modules and world together, stepped from event to event |
 //! | [`fault`] | faults between a module and its host |
 //! | [`journal`] | record of the outputs, for tests of safety |
 //! | [`wire`], [`pace`], [`pty`] | lines as streams in virtual time, and as pseudo-terminals in real time |

@@ -1,12 +1,12 @@
-//! One serial line at the modules' end: timing of characters and framing of requests.
+//! One serial line as its modules see it: timing of characters, and framing of requests.
 //!
-//! The host passes bytes at once; on the wire each takes ten bits. A request arrives with its CR. The receiver
-//! joins fragments, separates several requests in one piece, discards a partial request after [`SILENCE_US`]
-//! without a character, and discards an overlong request up to its CR.
+//! The host writes several bytes at once; on the wire each takes ten bits. A request arrives with its CR. The receiver
+//! joins fragments, separates several requests in one piece, discards a partial request after [`SILENCE_US`] without a
+//! character, and discards an overlong request up to its CR.
 
 use crate::dcon;
 
-/// Silence after which a partial request is discarded as the remains of a crashed client, microseconds.
+/// Silence after which the receiver discards a partial request as the remains of a crashed client, microseconds.
 pub const SILENCE_US: u64 = 150_000;
 
 /// Bits of a character: start, eight data, stop.
@@ -26,7 +26,7 @@ pub struct Arrival {
     pub text: Vec<u8>,
 }
 
-/// Receiver of a line; joins bytes to requests.
+/// Receiver of a line; assembles bytes into requests.
 #[derive(Debug, Clone)]
 pub struct Receiver {
     baud: u32,
@@ -52,7 +52,7 @@ impl Receiver {
         self.baud = baud;
     }
 
-    /// Takes bytes that the host sends at `now_us`; returns the requests that they complete.
+    /// Accepts bytes that the host sends at `now_us`; returns the requests that they complete, without overlong ones.
     pub fn take(&mut self, bytes: &[u8], now_us: u64) -> Vec<Arrival> {
         if now_us > self.busy_until_us + SILENCE_US {
             self.partial.clear();

@@ -1,7 +1,7 @@
 //! Maps rig time to tokio's clock: one rig microsecond is one tokio millisecond.
 //!
-//! tokio's timers resolve 1 ms, so the mapping gives them a resolution of 1 us of rig time. With tokio's clock
-//! paused, the longer waits take no wall time.
+//! The timers of tokio resolve 1 ms, so the mapping gives them a resolution of 1 us of rig time. With the clock of
+//! tokio paused, the thousandfold waits take no wall time.
 
 use std::time::Duration;
 use tokio::time::Instant;

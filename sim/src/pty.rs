@@ -1,13 +1,16 @@
 //! Lines as pseudo-terminals in real time.
 //!
-//! The slave is in raw mode before a client opens it. One slave descriptor stays open, so that clients may open
-//! and close the port for each request. A killed client leaves the terminal exclusive, so this module ends that
-//! mode. Two threads serve a line: one reads the master and stamps the bytes with their time of arrival; the other
-//! sends each reply at an absolute time, so that late wake-ups never add up. A pseudo-terminal has no baud rate: this module adds the time of every character, and a client may set any
-//! rate unless [`Rates::Enforced`]. Each reply is one write. The rig advances while no client talks, so that
-//! watchdogs expire in time.
-//! A lost port closes its terminal: clients get an end of file or an I/O error, as with an unplugged
-//! converter. Its link disappears until the port comes back, then points at another terminal.
+//! The slave side is in raw mode before a client opens it. The simulator keeps one slave descriptor open, so that
+//! clients may open and close the port for each request. A killed client leaves the terminal in exclusive mode, so this
+//! module ends that mode.
+//!
+//! Two threads serve a line: one reads the master side and stamps the bytes with their time of arrival; the other sends
+//! each reply at an absolute time, so that late wake-ups never add up. A pseudo-terminal has no baud rate: this module
+//! adds the time of every character, and a client may set any rate unless [`Rates::Enforced`]. Each reply is one write.
+//! The rig also advances while no client talks, so that watchdogs expire in time.
+//!
+//! A lost port closes its terminal: clients get an end of file or an I/O error, as with an unplugged converter. Its
+//! link disappears until the port comes back, then points at a new terminal.
 
 mod server;
 mod socket;
@@ -32,13 +35,13 @@ pub struct Ptys {
     stop: Arc<AtomicBool>,
 }
 
-/// Effect of the baud rate that a client sets.
+/// Effect of a baud rate that a client sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rates {
     /// The rate has no effect: the line's own rate applies.
     Ignored,
-    /// A module receives only requests at its own rate (9600 with INIT* grounded), as on a wire. A client that sets
-    /// no rate has the line's rate.
+    /// As on a wire: a module receives only requests at its own rate (9600 with INIT* grounded). The rate of the line
+    /// applies until a client sets one.
     Enforced,
 }
 
@@ -48,8 +51,8 @@ struct Port {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Opens a pseudo-terminal per line and starts to answer. Rig time continues from its present value and follows
-/// the wall clock.
+/// Opens a pseudo-terminal per line and starts its threads. Rig time continues from its present value and follows the
+/// wall clock.
 ///
 /// # Errors
 /// Fails when the system refuses a pseudo-terminal or a thread.
@@ -122,7 +125,7 @@ impl Drop for Ptys {
             port.socket.wake_reader();
             port.socket.unblock_writer();
             if let Some(thread) = port.thread.take() {
-                // The panic message of the thread is already on stderr.
+                // A thread that panicked has already written its message to stderr.
                 let _ = thread.join();
             }
             port.socket.unlink();

@@ -1,11 +1,11 @@
 //! The rig: modules on lines, the world behind them, and the order of events.
 //!
-//! The rig runs from event to event. Before a module answers a request, every earlier event happens in order of
-//! time: conversions, steps of ramps, expiries of watchdogs, timed faults; events of one instant follow the order
-//! of modules in the configuration. The world advances to each of these instants. Rig time never runs backwards:
-//! a request with a time before the last event counts as arriving at that event. A module serves one request at a
-//! time: its replies keep their order, and a late reply delays the next one. Meanwhile the module keeps one
-//! request and misses all others.
+//! The rig runs from event to event. Before a module answers a request, every earlier event happens in order of time:
+//! conversions, steps of ramps, expiries of watchdogs, timed faults; simultaneous events follow the order of modules in
+//! the configuration. The world advances to each of these instants. Rig time never runs backwards: a request with a
+//! time before the last event counts as arriving at that event. A module serves one request at a time: its replies keep
+//! their order, and a late reply delays the next one. While a module is busy with a late reply, it keeps one request
+//! and misses all others.
 
 use std::sync::mpsc::Receiver;
 
@@ -100,7 +100,8 @@ impl Rig {
         self.exchange_at(line, None, text, t_us)
     }
 
-    /// Delivers a request as [`Self::exchange`] does, at the baud rate of the host; `None` suits every module.
+    /// Delivers a request as [`Self::exchange`] does, sent at the baud rate of the host; with `None` every module
+    /// receives it.
     pub fn exchange_at(
         &mut self,
         line: usize,
@@ -146,8 +147,8 @@ impl Rig {
         Some(Reply { at_us, bytes })
     }
 
-    /// Returns what a line sends by itself up to `t_us`: the codes of the code reader. Nothing arrives while the line is
-    /// dead or its port lost.
+    /// Returns the bytes that a line sends by itself up to `t_us`: the codes of the code reader. Nothing arrives while
+    /// the line is dead or its port is lost.
     pub fn unprompted(&mut self, line: usize, t_us: u64) -> Vec<Reply> {
         let is_reader = |spec: &&LineSpec| spec.name == READER;
         let Some(spec) = self.lines.get(line).filter(is_reader).cloned() else {
@@ -253,7 +254,7 @@ impl Rig {
     }
 
     /// Returns the record of the world, which also controls the faults of the world. Faults of lines and modules are
-    /// not in it: they end with their windows.
+    /// not part of it: they end with their windows.
     pub fn record(&mut self) -> &mut dyn WorldRecord {
         self.scene.record()
     }
@@ -305,7 +306,7 @@ fn apply_event(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us:
     }
 }
 
-/// Merges the replies of two modules at one address; the earlier one sets the delay.
+/// Merges the replies of two modules at one address; the earlier reply sets the delay.
 fn merged_replies(first: (u64, Vec<u8>), second: (u64, Vec<u8>), baud: u32) -> (u64, Vec<u8>) {
     let apart_us = second.0 as i64 - first.0 as i64;
     let apart_bits = apart_us * i64::from(baud) / 1_000_000;

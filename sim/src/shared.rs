@@ -34,7 +34,7 @@ pub struct Options {
     pub faults: Vec<String>,
 }
 
-/// A rig that all its lines use; clones share it.
+/// A rig that its lines share; a clone refers to the same rig.
 #[derive(Clone)]
 pub struct SharedRig(Arc<Mutex<Rig>>);
 
@@ -58,7 +58,7 @@ impl Options {
     }
 }
 
-/// Builds the rig of its files; the seed draws its errors and parts.
+/// Builds the rig that its files describe; the seed draws its errors and parts.
 ///
 /// # Errors
 /// Fails when a file is missing or wrong, a module is not simulated, or a fault is unknown or has an unfit value.
@@ -151,10 +151,10 @@ pub(crate) fn number(name: &str, text: &str) -> Result<f64, SimError> {
     }
 }
 
-/// What a fault of a rig may name.
+/// Description of the targets that a fault of a rig may name, for messages.
 pub(crate) const RIG_TARGETS: &str = "a module or line of rig.toml";
 
-/// Checks that every module, line or instrument that a fault names exists; a misspelt name would have no effect.
+/// Fails when a fault names a module, line or instrument that does not exist: the misspelt fault would have no effect.
 pub(crate) fn check_targets<'a>(
     mut targets: impl Iterator<Item = &'a str>,
     expected: &str,
@@ -170,7 +170,7 @@ pub(crate) fn check_targets<'a>(
     }
 }
 
-/// Builds the modules. The rig's seed draws their errors, the noise seed (if any) their noise.
+/// Builds the modules. The seed of the rig draws their errors; the noise seed, if any, draws their noise.
 fn modules(
     file: &RigFile,
     table: &WorldTable,

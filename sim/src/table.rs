@@ -1,8 +1,8 @@
 //! Tables of TOML files, read key by key. An error gives file, line and key, the value found and the form expected.
 //!
-//! A [`Table`] remembers the keys that its caller looks for, so that [`Table::finish`] refuses every other key and
-//! lists the known ones. Only [`Read`] is generic, with a few lines per type, because derived parsers of all tables
-//! would take half the compile time of this crate.
+//! A [`Table`] remembers the keys that its caller asks for, so that [`Table::finish`] can refuse every other key and
+//! list the known ones. Only [`Read`] is generic, with a few lines per type: derived parsers of all tables would take
+//! half the compile time of this crate.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,7 +27,7 @@ struct Place {
 pub struct Entry {
     place: Place,
     written: String,
-    /// Value of a text, a number or a flag; `None` for anything else.
+    /// Value of a text, a number or a flag; `None` for any other kind of value.
     leaf: Option<Value>,
     list: Option<Vec<Entry>>,
     table: Option<Table>,
@@ -38,7 +38,7 @@ pub struct Entry {
 pub struct Table {
     place: Place,
     entries: BTreeMap<String, Entry>,
-    /// Keys that the caller has looked for.
+    /// Keys that the caller has asked for.
     asked: RefCell<BTreeSet<&'static str>>,
 }
 
@@ -85,7 +85,7 @@ impl Entry {
         self.place.error(&self.written, expected)
     }
 
-    /// Returns the value as a table; fails when it is none.
+    /// Returns the value as a table; fails when it is not a table.
     pub fn table(&self) -> Result<&Table, ConfigError> {
         self.table.as_ref().ok_or_else(|| self.wrong("a table"))
     }
@@ -181,7 +181,8 @@ impl Table {
         Ok(self.get::<Option<T>>(key)?.unwrap_or(absent))
     }
 
-    /// Converts the value of a key, if present; fails when it does not fit `form`, which describes the values expected.
+    /// Converts the value of a key, if present; fails when the conversion returns `None`. `form` describes the
+    /// permitted values in the message.
     pub fn fit<'a, T>(
         &'a self,
         key: &'static str,
@@ -202,7 +203,7 @@ impl Table {
         }
     }
 
-    /// Fails at the first key that the caller has not looked for.
+    /// Fails at the first key that the caller has not asked for.
     pub fn finish(&self) -> Result<(), ConfigError> {
         let asked = self.asked.borrow();
         let unknown = |(key, _): &(&String, &Entry)| !asked.contains(key.as_str());
@@ -216,7 +217,7 @@ impl Table {
         }
     }
 
-    /// Replaces values by those of `over`, key by key; keeps the keys that `over` lacks.
+    /// Replaces values by those of `over`, key by key; keys that `over` lacks keep their values.
     pub fn overlay(&mut self, over: Self) {
         for (key, mut entry) in over.entries {
             let own = self.entries.get_mut(&key).map(|own| &mut own.table);

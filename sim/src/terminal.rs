@@ -1,8 +1,8 @@
 //! The screw terminals: the boundary between the modules and the world that they measure and drive.
 //!
-//! Modules have bytes, converters and registers; the world has coils, cylinders and contacts. The two exchange
-//! volts, logic levels and gate times, at integer microseconds of rig time that never run backwards. A module
-//! reads and writes only after [`Plant::advance`] has brought the world to that instant.
+//! Modules have bytes, converters and registers; the world has coils, cylinders and contacts. The two exchange volts,
+//! logic levels and gate times, at whole microseconds of rig time that never run backwards. A module reads and writes
+//! only after [`Plant::advance`] has brought the world to that instant.
 
 use crate::table::Table;
 
@@ -15,13 +15,13 @@ pub struct ModuleSpec {
     pub line: String,
     /// Address on that line.
     pub address: u8,
-    /// Model name as printed on the housing, `I-7017F`.
+    /// Model name as printed on the housing, for example `I-7017F`.
     pub model: String,
-    /// Its table in the configuration, with the keys of the fields above.
+    /// The whole table of the module in the configuration, including the keys of the fields above.
     pub settings: Table,
 }
 
-/// The world behind the terminals; modules are named by their identifiers in `config/rig.toml`.
+/// The world behind the terminals; it knows modules by their identifiers in `config/rig.toml`.
 pub trait Plant {
     /// Brings the world to `t_us`; all other methods refer to that instant.
     fn advance(&mut self, t_us: u64);

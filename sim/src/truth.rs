@@ -7,8 +7,8 @@ use crate::error::SimError;
 use crate::world::WorldOptions;
 use crate::world::relay::Levels;
 
-/// Facts of the world that no module reports, and control of its faults. A world of fixed signals has neither parts nor
-/// faults.
+/// Facts of the world that no module reports, and control of its faults. The default methods suit a world of fixed
+/// signals, which has neither parts nor faults.
 pub trait WorldRecord {
     /// Returns one object per lot part that has entered the nest, in order.
     fn truth(&self) -> Vec<serde_json::Value> {
@@ -39,7 +39,8 @@ pub trait WorldRecord {
         Err(SimError::UnknownFault { name: fault.into() })
     }
 
-    /// Replaces the parts in the magazine as an operator does; only the options about parts apply.
+    /// Replaces the parts in the magazine as an operator does; only recipe, number of parts and reference parts of the
+    /// options apply.
     ///
     /// # Errors
     /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
@@ -58,11 +59,11 @@ pub trait WorldRecord {
         Vec::new()
     }
 
-    /// Cancels the faults of the world that have not struck yet.
+    /// Cancels all faults of the world; a fault that has struck keeps its effects.
     fn cancel_faults(&mut self) {}
 }
 
-/// True values of one lot part; `None` where the part has not shown the quantity.
+/// True values of one lot part; `None` for a quantity that the part has not shown yet or cannot show.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PartTruth {
     /// Order of entering the nest, from 1, without reference parts.

@@ -1,8 +1,8 @@
 //! Bits on the wire: characters that a receiver gets from two transmitters at once, or at a wrong baud rate.
 //!
-//! A character is a start bit (0), eight data bits from the lowest, and a stop bit (1); an idle wire is 1. The
-//! receiver waits for a start bit, takes ten bits, and waits for the next start bit. It reads a character with a
-//! broken stop bit as 0, as a terminal in raw mode does.
+//! A character is a start bit (0), eight data bits from the lowest, and a stop bit (1); an idle wire is 1. The receiver
+//! waits for a start bit, samples ten bits, and waits for the next start bit. It reads a character whose stop bit is 0
+//! as the byte 0, as a terminal in raw mode does.
 
 /// Number of bits in a character.
 const CHARACTER: usize = 10;
@@ -45,7 +45,7 @@ pub(crate) fn superposed(first: &[u8], second: &[u8], apart: i64) -> Vec<u8> {
     characters_of(&both)
 }
 
-/// Returns the characters that a receiver gets from a transmitter `times` slower than its own rate.
+/// Returns the characters that a receiver gets when its rate is `times` that of the transmitter.
 pub(crate) fn sampled_too_fast(bytes: &[u8], times: usize) -> Vec<u8> {
     let sent = bits_of(bytes);
     let slow: Vec<bool> = sent

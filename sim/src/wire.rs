@@ -20,10 +20,10 @@ use crate::rig::Reply;
 /// Buffer size of a stream in each direction, bytes; a reply has at most 64 characters.
 const ROOM: usize = 4_096;
 
-/// Pause between two looks for a code of the code reader, microseconds.
+/// Interval at which the line polls the code reader, microseconds.
 const LOOK_US: u64 = 10_000;
 
-/// Source of a line's stream; offers a new stream after the port was lost or closed.
+/// Source of a line's stream; after the port was lost or closed it offers a new stream.
 #[derive(Clone, Default)]
 pub struct Plug(Arc<Mutex<Option<DuplexStream>>>);
 
@@ -37,7 +37,7 @@ impl Plug {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = stream;
     }
 
-    /// Checks whether another clone of the plug exists, so that a host may still open the stream.
+    /// Checks whether another clone of the plug exists, whose host may still open the stream.
     fn is_held(&self) -> bool {
         Arc::strong_count(&self.0) > 1
     }
@@ -87,7 +87,7 @@ struct Line {
     plug: Plug,
     receiver: Receiver,
     arrivals: VecDeque<Arrival>,
-    /// Replies on their way, mostly one; a late reply may be overtaken.
+    /// Replies on their way, usually one; a later reply may overtake a delayed one.
     replies: Vec<Reply>,
 }
 

@@ -1,4 +1,4 @@
-//! `card`: the operation process card of a recipe.
+//! `relayrig card`: prints the operation process card of a recipe.
 
 use super::history::paper::PaperArgs;
 use app::exit::Exit;

@@ -9,7 +9,7 @@ use app::exit::Exit;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Collision answers for a scene and its moves, without a rig.
+/// Tells whether moves in a scene collide, without a rig.
 #[derive(Debug, clap::Args)]
 #[command(after_help = r#"Examples:
   echo '{"elements": [{"id": "pin", "kind": "cylinder", "radius": 4, "height": 30}],
@@ -35,7 +35,7 @@ pub struct CheckArgs {
     /// One JSON object per move instead of text
     #[arg(long)]
     pub json: bool,
-    /// Clearances are given up to this distance, mm
+    /// Largest clearance to report, mm
     #[arg(long, value_name = "MM", default_value_t = 25.0)]
     pub range: f64,
 }

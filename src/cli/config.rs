@@ -34,7 +34,8 @@ pub enum Args {
 relayrig config revise jzc-22f-012 --save-as jzc-22f-012-a title_en='For customer A' --by zhao --reason 'customer A'"
     )]
     Revise(Revised),
-    /// Approve the newest revision of a recipe as its second engineer; asks for the password, or reads the first line of stdin
+    /// Approve the newest revision of a recipe as its second engineer; asks for the password, or reads the first line
+    /// of stdin
     #[command(
         after_help = "Examples:\n  relayrig config approve jzc-22f-012 --by wang\n  \
 relayrig config approve jzc-22f-012 --by wang < password.txt\n\n\
@@ -77,7 +78,7 @@ pub struct Revised {
     save_as: Option<String>,
 }
 
-/// Reads `KEY=VALUE`: the value as JSON, else as a text; an empty one as null, which removes the key.
+/// Parses `KEY=VALUE`: a value that is not valid JSON is a text, and an empty value is null, which removes the key.
 fn key_value(text: &str) -> Result<(String, Value), KeyValueError> {
     let (key, value) = text.split_once('=').ok_or(KeyValueError)?;
     let value = match value {

@@ -1,5 +1,5 @@
-//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once. It needs no preparation, brings
-//! its configuration and has a history of its own.
+//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once. It needs no preparation: it
+//! brings its own configuration and has its own history.
 
 use super::rig::{self, PaceArg, RigArgs};
 use super::serve::{self, PageArgs, ServeArgs};

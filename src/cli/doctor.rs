@@ -23,7 +23,7 @@ pub struct DoctorArgs {
     /// Port of a line instead of the one in rig.toml
     #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
     pub line: Vec<String>,
-    /// For the simulated rig: no ports, no calibration
+    /// Check for the simulated rig: no ports, no calibration
     #[arg(long)]
     pub sim: bool,
     /// Folder of the backups [default: /var/backups/relayrig of an installed rig]

@@ -107,7 +107,7 @@ enum Command {
         after_help = "Example: relayrig history import old.csv --lot 2019-07 --map Uop=operate_voltage_v"
     )]
     Import(import::ImportArgs),
-    /// Verdicts of another recipe on a lot; writes nothing
+    /// Judge a lot by another recipe; writes nothing
     #[command(after_help = "Example: relayrig history rejudge --lot A --recipe jzc-22f-012")]
     Rejudge(rejudge::RejudgeArgs),
     /// Delete the parts of old runs that a backup or an export holds whole
@@ -139,7 +139,7 @@ pub fn run(files: &Files, args: HistoryArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Names the command line option in an error that names a member of the filter; lots to compare have none.
+/// Names the command line option in an error that names a member of the filter; lots to compare have no option.
 fn by_option(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref::<InquiryError>() {
         Some(InquiryError::Member {
@@ -178,7 +178,7 @@ fn dispatch(files: &Files, command: Command) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Checks the file; damage is an answer (status 1), not bad input.
+/// Checks the file; damage gives exit status 1, not an error.
 fn check(db: &Path) -> anyhow::Result<Exit> {
     match Archive::open(db)?.check() {
         Ok(()) => {

@@ -1,4 +1,4 @@
-//! `relayrig host check`: whether this computer keeps the rig's time.
+//! `relayrig host check`: tests whether this computer keeps the timing of the rig.
 //!
 //! Exit status: 0 it does, 1 it does not, 2 bad input, 4 stopped by Ctrl-C.
 

@@ -1,4 +1,4 @@
-//! Default paths: those of the working folder, or those of the installed rig where the working folder has none.
+//! Default paths: those of the working folder, or, when it has none, those of the installed rig.
 
 use app::order::Files;
 use config::Folder;

@@ -51,13 +51,13 @@ struct LinkArgs {
     /// tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDR or gpib-serial:PATH:BAUD:ADDR
     #[arg(long, value_name = "LINK")]
     link: LinkAddress,
-    /// Milliseconds until a reply; without it those of the profile, or 1000
+    /// Longest wait for a reply, milliseconds; without it that of the profile, or 1000
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=60_000))]
     timeout: Option<u64>,
 }
 
 impl LinkArgs {
-    /// Returns the time that characters take on a serial port, milliseconds; 0 on a network.
+    /// Returns the time that this number of characters takes on a serial port, milliseconds; 0 on a network.
     fn wire_ms(&self, characters: usize) -> f64 {
         match self.link.transport {
             Transport::Tcp { .. } => 0.0,
@@ -65,7 +65,7 @@ impl LinkArgs {
         }
     }
 
-    /// Returns a link with the settings of a profile, or with the usual ones for any instrument.
+    /// Returns a link with the settings of `profile`; without one, with default settings that suit most instruments.
     fn link(&self, profile: Option<&Profile>) -> Link {
         let gpib = self.link.gpib;
         let mut settings = profile.map_or_else(
@@ -109,7 +109,7 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Returns the folder that has profiles: that of the plant, or, when it has none, the profiles of the program.
+/// Returns the folder with the profiles: `folder` if it has any, otherwise the profiles inside the program.
 fn profiles(folder: &Folder) -> Result<Folder, ConfigError> {
     folder.check_exists()?;
     Ok(match instrument_names(folder).is_empty() {
@@ -122,7 +122,7 @@ fn profile(folder: &Folder, name: Option<&String>) -> Result<Option<Profile>, Co
     name.map(|name| load_instrument(folder, name)).transpose()
 }
 
-/// Returns the sentence of a failure, in English.
+/// Returns the English text of a failure.
 fn sentence(failure: &Failure) -> String {
     message(failure).say(Lang::En)
 }

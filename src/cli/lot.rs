@@ -1,6 +1,7 @@
 //! `relayrig lot`: shows the state of a lot; holds, releases, closes or reopens it.
 //!
-//! A decision is an order like those of a screen: the audit of orders records it with the name of the person.
+//! A decision is an order like those of a screen: the audit of orders records it with the name of the person who
+//! decides.
 
 use super::person;
 use anyhow::{Context, anyhow};

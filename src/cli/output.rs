@@ -67,7 +67,8 @@ fn padded(cells: impl Iterator<Item = (isize, String)>) -> String {
     cells.map(pad).collect::<Vec<_>>().join(" ")
 }
 
-/// Returns rows as text: a table row each, or what `object` returns; `none` for a table without rows.
+/// Returns rows as text: headings and a table row each, or the text that `object` returns for each. An empty table is
+/// the text `none`.
 pub(super) fn listing<T>(
     rows: &[T],
     columns: &[Fixed<T>],
@@ -84,7 +85,8 @@ pub(super) fn listing<T>(
     head.into_iter().chain(rows).map(|row| row + "\n").collect()
 }
 
-/// Returns the latency that this share of the replies did not exceed, milliseconds; `None` without any.
+/// Returns the latency, milliseconds, that the given share (0 to 1) of the replies did not exceed; `None` without
+/// replies.
 pub(super) fn latency_ms(latencies: &Histogram, share: f64) -> Option<f64> {
     Some(latencies.percentile(share)?.as_seconds() * 1e3)
 }
@@ -126,7 +128,7 @@ impl Output {
         Ok(self.0.write_all(b"\n")?)
     }
 
-    /// Writes the rows in this form; JSON shows every field of a row, not only the columns.
+    /// Writes the rows in the form `format`; JSON shows every field of a row, not only the columns.
     pub fn list<T: Serialize>(
         &mut self,
         format: Format,

@@ -57,10 +57,10 @@ pub struct RunArgs {
     /// Person who answers
     #[arg(long, value_name = "NAME", requires = "answer")]
     pub by: Option<String>,
-    /// Beside the lot, a bare real-time loop, to compare how late this computer wakes both
+    /// Run a bare real-time loop beside the lot, to compare how late this computer wakes the two
     #[arg(long)]
     pub bare_loop: bool,
-    /// Instead of one lot, ten parts (or --count) three times on three rigs, for the share of the gauge
+    /// Gauge study instead of one lot: three simulated rigs measure ten parts (or --count) three times each
     #[arg(long, value_enum, value_name = "NAME", requires = "sim")]
     pub study: Option<StudyArg>,
 }
@@ -70,7 +70,7 @@ fn answer(text: &str) -> Result<(String, String), &'static str> {
     Ok((prompt.to_owned(), choice.to_owned()))
 }
 
-/// A study that feeds parts again.
+/// A study that measures the same parts again and again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum StudyArg {
     /// Gauge repeatability and reproducibility

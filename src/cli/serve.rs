@@ -33,10 +33,10 @@ pub struct ServeArgs {
 /// Where the page listens.
 #[derive(Debug, Clone, clap::Args)]
 pub struct PageArgs {
-    /// Address of the page; one that other computers reach takes a certificate
+    /// Address of the page; where other computers reach it, it needs --tls-cert and --tls-key
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// Certificate of the page, PEM, its issuers after it: the page is at https
+    /// Certificate of the page, then those of its issuers, PEM; the page is then served over https
     #[arg(long, value_name = "FILE", requires = "tls_key")]
     tls_cert: Option<PathBuf>,
     /// Private key of the certificate, PEM without password

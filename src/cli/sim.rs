@@ -53,7 +53,7 @@ pub struct SimArgs {
     /// No rig: the SCPI instruments of this file on sockets and pseudo-terminals (docs/instruments.md has every key)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "truth", "bench", "link", "heed_baud", "journal"])]
     pub instruments: Option<PathBuf>,
-    /// A module hears only a client at its own rate, as on a wire. Without it a pseudo-terminal has no rate
+    /// A module answers only at its own rate, as on a wire; without this option it answers at every rate
     #[arg(long)]
     pub heed_baud: bool,
     /// Prints every change of a digital output and every expired host watchdog, one object per line

@@ -1,4 +1,4 @@
-//! `relayrig study`: reproducible figures, see [`studies`].
+//! `relayrig study`: reproducible figures, each with the limit (bar) that it must meet; see [`studies`].
 //!
 //! Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input or a lot that did not start.
 
@@ -52,10 +52,11 @@ pub struct StudyArgs {
     /// One JSON object per figure, then a summary
     #[arg(long)]
     pub json: bool,
-    /// Also writes NAME.csv and NAME.svg into this directory; `cycle` adds cycle-gantt.svg, one part through all stations
+    /// Also writes NAME.csv and NAME.svg into this directory; `cycle` adds cycle-gantt.svg, one part through all
+    /// stations
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Lots, with seeds 1 to N; `pace` runs seed 1 N times
+    /// Number of lots, with seeds 1 to N; `pace` runs seed 1 N times
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: Option<u64>,
     /// First seed of `storm` [default: 1]
@@ -64,7 +65,7 @@ pub struct StudyArgs {
     /// Only this seed of `storm`
     #[arg(long, value_name = "S", conflicts_with = "seeds")]
     pub seed: Option<u64>,
-    /// Lots of `promises` in worlds that keep every promise
+    /// Number of lots that `promises` runs in worlds that keep every promise
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub lots: u64,
     /// Only this broken promise of `promises`

@@ -1,4 +1,4 @@
-//! `relayrig study` in a build without the studies: names the feature.
+//! `relayrig study` in a build without the studies: fails with the name of the feature to build with.
 
 use anyhow::bail;
 use app::exit::Exit;

@@ -72,7 +72,7 @@ impl Table {
     }
 }
 
-/// Returns a line with the figures of a lateness.
+/// Returns a line with the figures of a lateness: how late the computer woke the rig.
 pub fn lateness_line(name: &str, it: &LatenessView) -> String {
     format!(
         "{name}: median {:.3}, p99 {:.3}, p99.9 {:.3}, worst {:.3} ms of {} waits",

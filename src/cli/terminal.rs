@@ -42,7 +42,8 @@ impl Terminal {
         }
     }
 
-    /// Prints the cause of trouble that no summary named, because it came before the summary or after; only in JSON.
+    /// With [`Rows::Json`], prints the cause of trouble unless a summary has named it: the trouble may come before or
+    /// after the summary.
     pub fn ended(&self, exit: &Exit) {
         if let (Rows::Json, false, Some(cause)) = (self.rows, self.cause_printed, exit.cause()) {
             let it = serde_json::json!({"type": "trouble", "cause": cause});

@@ -42,7 +42,10 @@ fn every_story_takes_its_expected_course() {
 fn differences(script: &Path) -> Vec<String> {
     let name = script.file_stem().unwrap().to_string_lossy();
     let workshop = Workshop::new(&format!("story-{name}"));
-    let said = workshop.run(&format!("--db relayrig.db story {} --truth t.jsonl", script.display()));
+    let said = workshop.run(&format!(
+        "--db relayrig.db story {} --truth t.jsonl",
+        script.display()
+    ));
     let file = script.with_extension("told");
     if std::env::var_os("RELAYRIG_RENEW").is_some() {
         fs::write(&file, &said.stdout).unwrap();

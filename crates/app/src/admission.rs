@@ -21,7 +21,7 @@ use std::path::Path;
 use std::sync::Arc;
 use texts::{Lang, Message};
 
-/// Reason why a lot is refused. Its text is printed on the command line and names the option at fault.
+/// Reason why a lot is refused. Its text is printed on the command line and names the option that is wrong.
 #[derive(Debug, thiserror::Error)]
 pub enum AdmissionError {
     /// The lot's name has characters or a length that the history does not allow.
@@ -36,7 +36,7 @@ pub enum AdmissionError {
     /// The recipe is missing or invalid, or this plant cannot measure it.
     #[error(transparent)]
     Recipe(#[from] ConfigError),
-    /// The plant wants a second engineer to approve the recipe, and too few have signed it.
+    /// The plant requires approval of the recipe by a second engineer, and too few engineers have saved or approved it.
     #[error(
         "--recipe: found {recipe} with {found} of {SIGNATURES} engineers who saved or approved it, expected an approved \
          recipe (page Recipes, or relayrig config approve)"
@@ -73,7 +73,7 @@ pub enum AdmissionError {
     Complete {
         /// Name of the lot.
         lot: String,
-        /// State of the lot, with the instant at which it was complete.
+        /// State of the lot, with the instant at which it became complete.
         standing: Box<LotStatus>,
     },
     /// The lot began with another recipe.
@@ -90,12 +90,12 @@ pub enum AdmissionError {
         /// State of the lot, and the recipe with which the lot began.
         standing: Box<LotStatus>,
     },
-    /// A person scans the parts of the lot, but the run has no screen.
+    /// A person must scan the parts of the lot, but the run has no screen.
     #[error(
         "--lot: lot.toml has `source = \"wedge\"`; expected a lot at the page (relayrig serve), where a person scans each part"
     )]
     NeedsScreen,
-    /// A run without a screen has no answer to a prompt, or none of its choices.
+    /// A run without a screen has no answer to a prompt, or an answer that is none of its choices.
     #[error(
         "--answer: found {found} for prompt \"{prompt}\", expected {prompt}=CHOICE, one of {choices} (or a lot at the page)"
     )]
@@ -152,10 +152,9 @@ impl AdmissionError {
 
 /// Checks that a lot may run; returns its recipe.
 ///
-/// # Errors
-/// Fails when the plant wants an approval that the recipe lacks, when the lot is held, when it is complete and the order
-/// is no retest, when it began with another recipe, when a retest has no earlier run, or when this plant cannot measure
-/// the recipe.
+/// # Errors Fails on an invalid name or zero parts, when the recipe is faulty or lacks a required approval, when this
+/// plant cannot measure it, when the lot is held, is complete and the order is no retest, or began with another recipe,
+/// when a retest has no earlier run, and when the history cannot be read.
 pub fn admit(
     db: &Path,
     plant: &Plant,
@@ -281,7 +280,8 @@ pub fn calibration_refusal(
     }
 }
 
-/// Records a run without parts, with an alarm that says why the rig refused the lot; returns the cause of its end.
+/// Records a run without parts, with an alarm that says why the rig refused the lot; returns the cause for the exit
+/// status.
 ///
 /// # Errors
 /// Fails when the history cannot be written.

@@ -1,5 +1,5 @@
-//! Acknowledges or shelves alarms of runs that have ended, when a person orders it; the audit keeps the order with the
-//! person's name.
+//! Carries out a person's order to acknowledge or shelve alarms of runs that have ended; the audit keeps the order with
+//! the person's name.
 
 use anyhow::bail;
 use history::{AlarmChange, AlarmChangeRecord, OrderRecord, Row, Store};

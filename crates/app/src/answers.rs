@@ -9,9 +9,9 @@ use tokio::sync::mpsc;
 /// Answers given in advance, and the person who gives them.
 #[derive(Debug, Clone, Default)]
 pub struct Answers {
-    /// Person whom the record names.
+    /// Person who answers, for the audit of orders.
     pub by: By,
-    /// Name of a prompt and of the choice.
+    /// Pairs of a prompt's name and the name of the choice.
     pub given: Vec<(String, String)>,
 }
 
@@ -24,7 +24,7 @@ impl Answers {
     }
 }
 
-/// Answers each prompt of a run, and passes every event on.
+/// Gives each prompt of a run its answer, and passes every event on.
 pub(super) struct Answering<'a> {
     pub answers: &'a Answers,
     pub orders: mpsc::Sender<OrderRequest>,

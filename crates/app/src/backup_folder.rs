@@ -1,8 +1,8 @@
 //! Backs up a whole rig: a dated folder holds history, people and configuration; only the newest folders stay.
 //!
 //! `prune` deletes only runs of which the history records a copy. The history does not record a backup as a copy,
-//! because a later backup deletes it. A backup migrates neither history nor people, because an earlier program may be
-//! using the files.
+//! because a later backup deletes the earlier ones. A backup migrates neither history nor people, because an earlier
+//! program may be using the files.
 
 use crate::order::Files;
 use anyhow::Context;

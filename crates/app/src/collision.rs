@@ -14,7 +14,8 @@ pub struct MoveAnswer<'a> {
     pub id: &'a str,
     /// `clear` or `blocked`.
     pub verdict: &'static str,
-    /// Fraction of the move, 0 to 1, at which the distance first reaches the margin, rounded down; `None` when clear.
+    /// Fraction of the move, 0 to 1 and rounded down, at which the distance falls to the safety margin; `None` when the
+    /// move is clear.
     pub t_stop: Option<f64>,
     /// Element that stops the move at `t_stop`.
     pub blocker: Option<&'a str>,

@@ -10,7 +10,7 @@ use tokio::sync::watch;
 /// Controls of a run; clones share the same flags and view.
 #[derive(Debug, Clone)]
 pub struct Controls {
-    /// Ends the lot as soon as the parts inside the rig are finished.
+    /// Ends the lot once the parts inside the rig are finished.
     pub stop: Arc<AtomicBool>,
     /// Ends the lot at once; parts stay inside the rig.
     pub abort: Arc<AtomicBool>,
@@ -51,7 +51,7 @@ impl Controls {
         *held = Some(traces.clone());
     }
 
-    /// Returns a function that takes a number and returns that many last messages of every line, or fewer.
+    /// Returns a function that, given a number n, returns the last n messages of every line, or fewer.
     pub fn traffic(&self) -> impl Fn(usize) -> Vec<LineTraffic> + use<> {
         let traces = Arc::clone(&self.traces);
         move |last| {
@@ -63,7 +63,7 @@ impl Controls {
 }
 
 /// Sets the first flag at the first Ctrl-C or SIGTERM (the run then finishes the parts inside), and the second flag at
-/// the next one (the run then ends at once). A signal that arrives while this function logs is not lost.
+/// the second signal (the run then ends at once). A signal that arrives while this function logs is not lost.
 async fn watch_signals(flags: [Arc<AtomicBool>; 2]) -> std::io::Result<()> {
     let mut interrupts = Interrupts::listen()?;
     let said = [

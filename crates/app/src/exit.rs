@@ -1,8 +1,8 @@
 //! Reasons why a command ends, with their exit status, and the cause of exit status 3.
 //!
 //! The station ends a run with `Ending::Alarm` when an alarm stops an unattended rig (`machine/src/station/safety.rs`),
-//! when the rig stays suspended for too long, or when a person stops it in trouble (`states.rs` beside it). The cycle does
-//! so when a module does not fit the wiring (`cycle/src/lib.rs`). The cause of exit status 3 of a run is
+//! when the rig stays suspended for too long, or when a person stops it in trouble (`states.rs` beside it). The cycle
+//! does so when a module does not fit the wiring (`cycle/src/lib.rs`). The cause of exit status 3 of a run is
 //!
 //! - chosen in `lot/progress.rs`: the first alarm of the last trouble, or `aborted` after an order; for a lost history
 //!   or a failed assertion in `lot/mod.rs` and `service/mod.rs`; for a lot that the rig refuses before it begins in
@@ -21,7 +21,7 @@ use texts::Lang;
 pub enum Exit {
     /// The command finished, whatever the verdicts about parts.
     Done,
-    /// The command finished, and the answer is no: a move is blocked, a verification failed, or a figure misses its
+    /// The command finished with a negative answer: a move is blocked, a verification failed, or a figure misses its
     /// bar.
     AnswerIsNo,
     /// Bad input or configuration.

@@ -15,7 +15,7 @@ use machine::dut::Characteristic;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, GaugeRrError, Reading, anova};
 
-/// Number of rigs, which take the place of operators; AIAG's usual number, as are the two below.
+/// Number of rigs, which take the place of operators. This number and the next two are usual for AIAG.
 const OPERATORS: u64 = 3;
 /// Number of times that each rig measures each part.
 const TRIALS: u64 = 3;
@@ -48,8 +48,8 @@ fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
     }
 }
 
-/// Runs one lot per rig, named after `order`; returns the figures of every characteristic, or how the first lot that
-/// did not complete ended.
+/// Runs one lot per rig, named after `order`. Returns the figures of every characteristic, or the exit of the first lot
+/// that did not complete.
 ///
 /// # Errors
 /// Fails on bad input, as any lot does.

@@ -25,14 +25,15 @@ const READER: &str = "serial_reader";
 /// Number of readings that may wait for the cycle.
 const READINGS: usize = 16;
 
-/// Returns the code reader that gives this run its serial numbers, if one does.
+/// Returns the code reader that gives this run its serial numbers; `None` when none does.
 fn reader<'a>(context: &LotContext<'a>) -> Option<&'a SerialReaderSettings> {
     let source = context.plant.lot.serial.as_ref().map(|it| it.source);
     let reads = context.purpose == Purpose::Lot && source == Some(SourceName::Reader);
     context.plant.serial_reader.as_ref().filter(|_| reads)
 }
 
-/// Returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules do not count them.
+/// Function that returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules keep
+/// no count.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.

@@ -1,5 +1,5 @@
-//! Writes a person's decision to hold, release, close or reopen a lot that is not under way; the audit keeps it with
-//! the name, like an order at a screen.
+//! Writes a person's decision to hold, release, close or reopen a lot that is not under way; the audit keeps the
+//! decision with the person's name, like an order at a screen.
 
 use crate::admission::standing;
 use history::{

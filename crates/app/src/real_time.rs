@@ -1,8 +1,8 @@
 //! Runs the lines and the cycle on a thread of their own, raised above all ordinary processes where the system allows
 //! it.
 //!
-//! At real pace neither history nor page nor log run on this thread. In virtual time it is the caller's own thread,
-//! whose clock is that of the rig.
+//! At real pace neither history nor page nor log run on this thread. In virtual time the caller's own thread takes its
+//! place, because its clock is the clock of the rig.
 
 use anyhow::Context;
 use bus::Pace;
@@ -32,13 +32,13 @@ pub const INTERVAL: Span = Span::ms(1);
 pub struct RigThread {
     /// Spawns tasks onto the thread.
     pub handle: Handle,
-    /// Rights that the system grants the thread; the view's lateness is empty.
+    /// Rights that the system grants the thread; the lateness in it is empty.
     pub rights: HostView,
     own: Option<(oneshot::Sender<()>, JoinHandle<()>)>,
 }
 
 impl RigThread {
-    /// Returns the current thread in virtual time; else starts a thread and raises it.
+    /// Returns the current thread in virtual time; otherwise starts a thread and raises its priority.
     ///
     /// # Errors
     /// Fails when the system refuses a thread or its runtime.
@@ -157,7 +157,7 @@ pub struct BareLoop {
 }
 
 impl BareLoop {
-    /// Starts the loop on a thread of its own, raised as the rig's.
+    /// Starts the loop on a thread of its own, with the priority of the rig's thread.
     ///
     /// # Errors
     /// Fails when the system refuses the thread.

@@ -41,7 +41,7 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Finds a backup: a dated folder, the newest inside a folder of them, or a copied history.
+    /// Finds the backup at `at`: a dated folder, a folder of dated folders (the newest counts), or a copied history.
     ///
     /// # Errors
     /// Fails when there is none, or when a folder holds several histories.
@@ -79,12 +79,11 @@ impl Contents {
         ]
     }
 
-    /// Restores the items of the backup to `files`; returns the paths under which the replaced ones stay.
+    /// Restores the items of the backup to `files`; returns the new paths of the files and folders that they replace.
     ///
-    /// # Errors
-    /// Fails, and replaces nothing, when a target exists and `replace` is false, when a program has it open, and when a
-    /// copy cannot be made or checked. Fails too when a checked copy cannot be moved into place; others may be in place
-    /// then. No copy stays beside its target.
+    /// # Errors Fails, and replaces nothing, when a target exists and `replace` is false, when another program has a
+    /// target open, or when a copy cannot be made or checked. Fails too when a checked copy cannot be moved into place;
+    /// other copies may be in place then. No copy stays beside its target.
     pub fn restore(&self, files: &Files, replace: bool) -> anyhow::Result<Vec<PathBuf>> {
         let moves = self.moves(files)?;
         for (kept, _, target) in moves.iter().filter(|(_, _, target)| target.exists()) {
@@ -98,7 +97,7 @@ impl Contents {
         }
         let replaced = exchange(&moves);
         for (.., target) in &moves {
-            // The result of the exchange is returned; a failed clean-up matters less.
+            // The result of `exchange` is returned; a failed clean-up matters less.
             let _ = discard(&with_end(target, STAGED));
         }
         replaced
@@ -204,7 +203,7 @@ fn discard(path: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Copies an item to `staged`, in place of a copy that a killed restore left there, and checks the copy.
+/// Copies an item to `staged` and checks the copy; overwrites a copy that a killed restore left there.
 fn stage(kept: Kept, from: &Path, staged: &Path) -> anyhow::Result<()> {
     discard(staged)?;
     match kept {

@@ -28,7 +28,7 @@ impl LiveRig {
     }
 }
 
-/// Returns the configuration as the simulated rig reads it; of files in memory, as they are now.
+/// Returns the configuration in the form that the simulated rig reads; files in memory are copied as they are now.
 pub fn files(folder: &Folder) -> Files {
     match folder {
         Folder::Directory(dir) => Files::Directory(dir.clone()),
@@ -36,7 +36,8 @@ pub fn files(folder: &Folder) -> Files {
     }
 }
 
-/// Returns the faults of the source, and one more that loads reference parts as often as the lot's checks need them.
+/// Returns the faults of the source and, unless it has `golden_every`, that fault with the interval of the lot's
+/// reference checks, so that the magazine holds a reference part for each check.
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();
     let asked = faults.iter().any(|it| it.starts_with("golden_every"));

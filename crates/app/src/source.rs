@@ -38,7 +38,7 @@ pub struct Simulated {
     pub faults: Vec<String>,
     /// File for the true values of every part; `None`: none is written.
     pub truth: Option<PathBuf>,
-    /// A rig that exists before and after the run; `None`: the run builds one.
+    /// Simulated rig that exists before and after the run; `None`: the run builds a rig of its own.
     pub live: Option<Box<LiveRig>>,
 }
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texts::Lang;
 
-/// Largest number of traces per line and run; the first alarms explain the most.
+/// Largest number of alarms per run for which traces are written; the first alarms explain the most.
 const MAX_TRACES: usize = 8;
 
 #[derive(Debug, Clone)]
@@ -60,8 +60,8 @@ impl Traces {
         }
     }
 
-    /// Writes the trace of every line and returns the paths; deletes old traces, and these too when `[history]` keeps
-    /// none. Logs a failed write; the run continues.
+    /// Writes the trace of every line and returns the paths; writes nothing after `MAX_TRACES` calls. Then deletes
+    /// old traces, and these too when `[history]` keeps none. Logs a failed write; the run continues.
     pub fn dump(&mut self, at_us: i64) -> Vec<PathBuf> {
         if self.dumped >= MAX_TRACES {
             return Vec::new();

@@ -1,10 +1,10 @@
 //! The full storm of line faults: `cargo bench -p bus --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...
 //! [--json]]`.
 //!
-//! Counts the wrong readings that the line accepts; ends with status 1 when there is one. Prints beside them how many
-//! wrong readings to expect: two modules that reply at once produce, with a small probability, a frame whose checksum
-//! is right. When no fault is named, every fault has a probability of 1 %. `--json` prints the counts as figures, a line
-//! of JSON each.
+//! Counts the wrong readings that the line accepts; ends with status 1 when there is one. Also prints the number of
+//! wrong readings to expect: two modules that reply simultaneously produce, with a small probability, a frame with a
+//! correct checksum. Without a named fault, every fault has a probability of 1 %. `--json` prints the counts as
+//! figures, one line of JSON each.
 
 #[path = "../../../tests/line/storm/rage.rs"]
 mod rage;
@@ -17,7 +17,8 @@ use std::process::ExitCode;
 
 /// Number of transactions, none of which may give a wrong reading.
 const TRANSACTIONS: u64 = 1_000_000;
-/// Number of clashes (pairs of simultaneous replies) that are drawn, to find how often two replies pass for one.
+/// Number of clashes (pairs of simultaneous replies) that the program draws to estimate how often two replies pass for
+/// one.
 const CLASHES: u32 = 4_000_000;
 /// Share of the transactions, 0 to 1, that read a list: all inputs at once.
 const LISTS: f64 = 1.0 / 20.0;
@@ -47,7 +48,7 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(!weather.is_honest()))
 }
 
-/// Broken rules of a storm; the bar of each is 0.
+/// Counts of broken rules of a storm; each must be 0.
 fn broken(weather: &Weather) -> [(&'static str, u64); 5] {
     [
         ("readings of another channel", weather.foreign),
@@ -95,9 +96,10 @@ fn print_counts(weather: &Weather) {
     );
 }
 
-/// Prints how many wrong readings among n transactions no host can detect. Shares, 0 to 1: c of the transactions with
-/// two replies at once; p of such pairs that pass for another value; q of such pairs, at a read of all inputs, that
-/// pass within the noise of the reads before and after; d of the replies with damage that a host detects.
+/// Prints the expected number of wrong readings among n transactions that no host can detect. Shares, 0 to 1: c of the
+/// transactions with two simultaneous replies; p of such pairs that pass for another value; q of such pairs, at a read
+/// of all inputs, that pass within the noise of the reads before and after; d of the replies with damage that a host
+/// detects.
 fn print_expected(n: f64, faults: &[&str]) {
     let channel = Channel::new(0).expect("0 is a channel");
     let (p, _) = passing(

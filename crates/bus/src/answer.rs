@@ -14,8 +14,8 @@ pub struct Request {
     pub ticket: u64,
     /// The command to send.
     pub command: Command,
-    /// Greatest number of tries, the first one included; at least 1. A command that changes something is sent only
-    /// once.
+    /// Greatest number of tries, the first one included; at least 1. The line never repeats a command that changes
+    /// something.
     pub tries: u8,
 }
 
@@ -38,8 +38,8 @@ pub struct Answer {
     pub tries_used: u8,
 }
 
-/// A transaction that brought no valid reply. Its message names line, module, command and failure in one sentence,
-/// because alarms and pages show only the message.
+/// A transaction without a valid reply. Its message names line, module, command and failure in one sentence, because
+/// alarms and pages show only the message.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineError {
     /// Name of the line.
@@ -67,7 +67,7 @@ pub enum Failure {
     /// After a damaged reply from this address, the repeated reads disagree: two modules share the address, the line
     /// is disturbed, or the quantity changes faster than the line reads it.
     Contradicted,
-    /// Bytes kept arriving without a request since earlier trouble, so the line did not send the command.
+    /// Bytes without a request have kept arriving since earlier trouble, so the line did not send the command.
     NeverSilent,
     /// The port was lost, or could not be opened.
     PortLost(PortError),

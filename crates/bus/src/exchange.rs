@@ -76,7 +76,7 @@ impl Frame {
 pub(super) struct Identification {
     /// True when the module answered.
     pub(super) by_module: bool,
-    /// True when bytes arrived that are not the module's answer.
+    /// True when bytes arrived that are not part of the module's answer.
     pub(super) strays: bool,
     /// Time of the last character received, or of the request when none came.
     pub(super) last_heard: RigTime,
@@ -87,7 +87,7 @@ pub(super) struct Identification {
 pub(super) enum SilenceEnd {
     /// The line was silent for long enough.
     Silent,
-    /// The module answered with its name, so whatever arrived before needs no further wait.
+    /// The module answered with its name, so that no further wait for earlier bytes is needed.
     Named,
     /// Bytes kept arriving until the time limit.
     Noisy,
@@ -191,7 +191,7 @@ impl Exchange<'_> {
         self.write(request, timer).await.map(|_| ())
     }
 
-    /// Writes `bytes`; returns false when the port has not taken them by the time `timer` fires.
+    /// Writes `bytes`; returns false when the port has not accepted them before `timer` fires.
     async fn write(&mut self, bytes: &[u8], timer: Pin<&mut Sleep>) -> io::Result<bool> {
         self.note(Direction::Sent, bytes);
         tokio::select! {
@@ -204,7 +204,8 @@ impl Exchange<'_> {
     /// Reads the next bytes; returns `None` when `timer` has fired and no byte is waiting.
     ///
     /// A busy host may wake late and then find the timer fired *and* the reply in the buffer of the port. The module
-    /// was not silent, so this function polls the reactor once more before it gives up; that poll takes no time.
+    /// was not silent in this case, so this function polls the reactor once more before it gives up; that poll takes no
+    /// time.
     async fn piece(
         &mut self,
         piece: &mut [u8],
@@ -236,8 +237,8 @@ impl Exchange<'_> {
     pub(super) async fn discard(&mut self) -> io::Result<usize> {
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut total = 0;
-        // The loop is bounded, because a module that sends without pause could fill the buffer as fast as it is
-        // emptied.
+        // The loop is bounded, because a module that sends without pause could fill the buffer as fast as the loop
+        // empties it.
         for _ in 0..FRAME_LIMIT {
             let count = match self.read_now(&mut piece).await? {
                 None => break,
@@ -261,13 +262,13 @@ impl Exchange<'_> {
                 Poll::Pending => Ok(None),
             })
         });
-        // Reads outside tokio's cooperative budget, because within it `Pending` may only mean that other tasks run
+        // Reads outside of tokio's cooperative budget, because within it `Pending` may only mean that other tasks run
         // first.
         tokio::task::unconstrained(read).await
     }
 
-    /// Waits until nothing has arrived for the time `silence` after `last_heard`, or until `in_step` accepts a frame;
-    /// gives up at `limit`.
+    /// Waits until the line has been silent for the time `silence` since `last_heard`, or until `in_step` accepts a
+    /// frame; gives up at `limit`.
     pub(super) async fn silence(
         &mut self,
         silence: Span,

@@ -5,7 +5,7 @@ use dcon::{Address, Reply};
 use std::collections::BTreeMap;
 use units::Span;
 
-/// Counts of latencies in classes a quarter of an octave wide, so a percentile is at most 19 % too high.
+/// Counts of latencies in classes a quarter of an octave wide, so that a reported percentile is at most 19 % too high.
 #[derive(Debug, Clone)]
 pub struct Histogram {
     classes: [u32; Histogram::CLASSES],
@@ -25,7 +25,7 @@ impl Histogram {
     /// Number of classes: they cover 2^24 us (16 s), and the last one also holds longer latencies.
     const CLASSES: usize = 96;
 
-    /// Counts a latency; below 1 us counts as 1 us.
+    /// Counts a latency; one below 1 us counts as 1 us.
     pub fn add(&mut self, latency: Span) {
         let class = (latency.0.max(1) as f64).log2() * 4.0;
         let class = (class as usize).min(Self::CLASSES - 1);
@@ -80,7 +80,8 @@ pub struct ModuleHealth {
     pub refusals: u64,
     /// Number of reads that found the reset status set: the module was powered on, or reset by its own watchdog.
     pub resets: u64,
-    /// Times from the end of the request to the start of the reply, computed without the time on the wire.
+    /// Latencies of the answered tries: times from the end of the request to the start of the reply, computed as the
+    /// duration of the try minus the time on the wire.
     pub latency: Histogram,
 }
 

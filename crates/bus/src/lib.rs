@@ -1,6 +1,6 @@
 //! A serial line of DCON modules: one transaction at a time, in bounded time, and never another module's reply.
 //!
-//! One task owns one port ([`run`]). Each [`Request`] gets exactly one [`Answer`], in order.
+//! One task owns one port ([`run`]). Each [`Request`] gets exactly one [`Answer`], in the order of the requests.
 //!
 //! ```
 //! use bus::{LineSettings, Pace, Request, run};
@@ -36,16 +36,17 @@
 //!
 //! 1. The line discards the bytes that wait in the input, because they belong to no request.
 //! 2. It writes the request. The reply must be complete within wire(request) + wire(longest reply) + allowance.
-//! 3. It rests for the turnaround (two characters). A byte during the rest reveals a second sender: the line rejects
+//! 3. It pauses for the turnaround (two characters). A byte during this pause reveals a second sender: the line rejects
 //!    the reply.
 //! 4. After a time-out or damage it resynchronises: it asks the module for its name, and the `!AA` reply proves that no
 //!    older reply is on its way. When the module does not answer, the line must fall silent for the longest reply time
 //!    plus the grace for late replies; for one second after that, every reply that an earlier request could have caused
 //!    needs a confirmation, because `>` replies carry no address and a late one looks like the next.
-//! 5. It reads twice from an address on probation, that is, one whose replies were damaged: a checksum misses one error
-//!    in 256.
+//! 5. It reads at least twice from an address on probation, that is, one whose replies were damaged: a checksum misses
+//!    one error in 256.
 //! 6. It repeats only commands that change nothing, at most as often as the request allows.
-//! 7. Before it writes a setting to an EEPROM, it reads the setting and skips the write if the value is there already.
+//! 7. Before it writes a setting to an EEPROM, it reads the setting and skips the write if the module already has the
+//!    value.
 //!
 //! A line that does not fall silent answers [`Failure::NeverSilent`]. A line whose port is lost answers
 //! [`Failure::PortLost`], after the time that a silent module would take, and reopens the port at growing intervals.
@@ -55,7 +56,7 @@
 //! | file | what it does |
 //! |---|---|
 //! | `line.rs` | the task of a line: tries, repetitions, reopening |
-//! | `transaction.rs`, `exchange.rs` | one transaction, which drops late replies; the bytes of it |
+//! | `transaction.rs`, `exchange.rs` | one transaction, which drops late replies; the bytes of one exchange |
 //! | `outstanding.rs` | remembers replies that may still arrive late |
 //! | `probation.rs` | remembers addresses whose replies need confirmation |
 //! | `pace.rs` | rig time on tokio's timers, real or virtual |

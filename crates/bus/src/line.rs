@@ -26,8 +26,8 @@ pub async fn run(
     run_reopening(once, settings, pace, requests, answers).await;
 }
 
-/// Serves requests as [`run`] does, over ports that it opens itself: one at the first request, and after a loss another
-/// one, at most once per back-off time.
+/// Serves requests as [`run`] does, over ports that it opens itself: the first one at the first request, and after a
+/// loss another one, at most once per back-off time.
 pub async fn run_reopening(
     open: OpenPort,
     settings: LineSettings,
@@ -75,7 +75,7 @@ struct Line {
     timer: Timer,
     request: Vec<u8>,
     frame: Frame,
-    /// False after trouble, until the line has been silent for long enough.
+    /// False after trouble, until the line has been silent for the required time.
     silent: bool,
     outstanding: OutstandingReplies,
     probation: Probation,
@@ -92,8 +92,8 @@ struct Try {
 }
 
 impl Line {
-    /// Serves a request. Writes a setting only if the module does not have this value already, because EEPROMs wear;
-    /// writes it too if the module cannot report the value.
+    /// Serves a request. Writes a setting only if the module does not already have this value, because EEPROMs wear, or
+    /// if the module refuses to report it.
     async fn serve(&mut self, request: Request) -> Answer {
         let Some(setting) = request.command.setting() else {
             return self.carry_out(request).await;

@@ -1,7 +1,7 @@
-//! Records of a line or link; its task writes them and others read them.
+//! Records of a line or link: one task writes them, others read them.
 //!
-//! The task never waits for a reader: a reader that holds the records may have lost the processor for many
-//! milliseconds, and the modules' replies do not wait.
+//! The writing task never waits for a reader: a reader that holds the lock may have lost the processor for many
+//! milliseconds, and the replies of the modules do not wait.
 
 use super::{Health, Trace};
 use std::fmt;
@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 #[derive(Clone, Default)]
 pub struct Log<R> {
     records: Arc<Mutex<R>>,
-    /// Changes that found the records locked, oldest first; only the writing task locks this list.
+    /// Changes made while a reader held the records locked, oldest first; only the writing task locks this list.
     deferred: Arc<Mutex<Vec<Change<R>>>>,
 }
 
@@ -57,7 +57,7 @@ impl LineLog {
 }
 
 impl<R> Log<R> {
-    /// Changes the records, or, while a reader holds them, defers the change to the next call.
+    /// Changes the records; while a reader holds them, defers the change to the next call.
     pub(super) fn write(&self, change: impl FnOnce(&mut R) + Send + 'static) {
         let mut deferred = self.deferred.lock().unwrap_or_else(PoisonError::into_inner);
         let mut records = match self.records.try_lock() {

@@ -4,7 +4,7 @@ use super::{Direction, Entry, words};
 use dcon::{Command, Model, Reply, ReplyError};
 use texts::{Lang, Message};
 
-/// Largest number of meanings of one reply that a text lists; of more, it gives the first and the number of others.
+/// Greatest number of meanings of one reply that a text lists; of more, it lists these and states the number of others.
 const LISTED: usize = 3;
 
 /// Decodes each reply with the last request, which it remembers.
@@ -23,8 +23,9 @@ impl Meaning {
         }
     }
 
-    /// Returns the text of an entry in each language of `langs`: a reply together with its request, or a request to all
-    /// modules, which has no reply. The text of any other request is empty.
+    /// Returns the text of an entry in each language of `langs`. A reply gets a text together with its request, a
+    /// broadcast gets one by itself, and bytes without a request get one that says so; the text of any other request is
+    /// empty.
     pub fn of<const N: usize>(&mut self, entry: &Entry, langs: [Lang; N]) -> [String; N] {
         let reply: &[u8] = match entry.direction {
             Direction::Stray => return langs.map(|it| it.text("exchange-unsolicited").to_owned()),

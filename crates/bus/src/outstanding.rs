@@ -4,10 +4,10 @@
 //! look like the answer to the next request. The line prevents that in two ways:
 //!
 //! 1. It asks the silent module for its name ([`OutstandingReplies::identification`]). A module serves its requests in
-//!    order, so the reply, which names the module, proves that nothing older is on its way. A request for the name that
-//!    is not answered in time is outstanding too: its reply may arrive after a later request timed out, and then proves
-//!    nothing about that later one. So the line attributes a reply to the oldest request that it fits, and prefers a
-//!    request for the name that is not outstanding.
+//!    order, so the reply, which carries the module's address, proves that nothing older is on its way. A request for
+//!    the name that gets no reply in time is outstanding too: its reply may arrive after a later request timed out, and
+//!    then proves nothing about that later request. So the line attributes a reply to the oldest request that it fits,
+//!    and prefers a request for the name that is not outstanding.
 //! 2. If the module does not name itself, its reply stays outstanding for [`HORIZON`]. During that time the line
 //!    accepts a reply of the same form only when the module repeats this reply and then names itself, with no other
 //!    bytes in between. A write must not be repeated, so the line rejects the reply to a write.
@@ -15,23 +15,24 @@
 use dcon::{Address, Command, Common};
 use units::{RigTime, Span};
 
-/// Longest time after its time-out at which a reply may still arrive. Clients of these modules allow at most one
-/// second, and no module is known to need that.
+/// Longest time after a time-out for which the reply may still arrive. Clients of these modules allow at most one
+/// second, and no known module needs as much.
 const HORIZON: Span = Span::ms(1_000);
 
-/// Most outstanding replies. The number stays small, because each costs a time-out and is dropped after [`HORIZON`].
+/// Greatest number of outstanding replies. The real number stays small, because each costs a time-out and expires after
+/// [`HORIZON`].
 const MOST_OUTSTANDING: usize = 10_000;
 
-/// Commands that ask a module for its identity. Every module has them, and they change nothing. Their replies name the
-/// module and differ in form: three bytes in hexadecimal, a version, a product name.
+/// Commands that ask a module for its identity. Every module has them, and they change nothing. Their replies carry the
+/// module's address and differ in form: three bytes in hexadecimal, a version, a product name.
 const IDENTIFICATIONS: [Common; 3] = [Common::ReadConfig, Common::ReadFirmware, Common::ReadName];
 
-/// Returns the first of [`IDENTIFICATIONS`], addressed to `to`; callers use its time-out for all three.
+/// Returns the first of [`IDENTIFICATIONS`] for the module at `to`; callers use its time-out for all three.
 pub(super) fn identification(to: Address) -> Command {
     IDENTIFICATIONS[0].to(to)
 }
 
-/// Replies that may still arrive: their requests, oldest first, each with the time at which it is dropped.
+/// Replies that may still arrive: their requests, oldest first, each with the time at which it expires.
 #[derive(Debug, Default)]
 pub(super) struct OutstandingReplies(Vec<(Command, RigTime)>);
 
@@ -56,14 +57,14 @@ impl OutstandingReplies {
             .unwrap_or_else(|| identification(to))
     }
 
-    /// Returns true when the reply to `command` may be on its way.
+    /// Returns true when a reply to `command` may still be on its way.
     pub(super) fn contains(&self, command: &Command) -> bool {
         self.0.iter().any(|(request, _)| request == command)
     }
 
-    /// Removes the requests that `frame` proves to be answered: if the frame names `module`, the oldest request that it
-    /// fits and all older ones to this module. Returns false when it names another module, or fits no outstanding
-    /// request.
+    /// Removes the requests that `frame` proves to be answered: if the frame carries the address of `module`, the
+    /// oldest request that it fits and all older ones to this module. Returns false when the frame carries another
+    /// address, or fits no outstanding request.
     pub(super) fn settle(&mut self, module: Address, frame: &[u8], with_checksum: bool) -> bool {
         let to_it = |request: &Command| request.address() == Some(module);
         let answered = |request: &Command| to_it(request) && fits(request, frame, with_checksum);
@@ -89,7 +90,7 @@ impl OutstandingReplies {
     }
 }
 
-/// Returns true when `frame` is a reply to `request`, or the refusal of it.
+/// Returns true when `frame` is a reply to `request`, or a refusal of it.
 fn fits(request: &Command, frame: &[u8], with_checksum: bool) -> bool {
     match request.decode(frame, with_checksum) {
         Ok(_) => true,

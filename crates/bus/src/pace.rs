@@ -2,21 +2,21 @@
 //!
 //! At real pace, rig time follows the wall clock. At virtual pace it follows tokio's paused clock, which jumps to the
 //! next deadline as soon as every task waits. Tokio's timers have steps of one millisecond, too coarse for characters
-//! of 87 us; so at virtual pace *one microsecond of the rig is one millisecond of tokio*. Only this file knows this
-//! factor.
+//! of 87 us; so at virtual pace *one microsecond of rig time is one millisecond of tokio's clock*. In this crate only
+//! this file knows the factor.
 
 use std::time::Duration;
 use tokio::time::{Instant, Sleep};
 use units::{RigTime, Span};
 
-/// The rig's clock. Copies show the same time.
+/// Clock of the rig. Copies show the same time.
 #[derive(Debug, Clone, Copy)]
 pub struct Pace {
     began: Instant,
     is_virtual: bool,
 }
 
-/// Rig time between two pauses by which [`Pace::limit_speed`] slows virtual time: half the time of a screen frame.
+/// Rig time between two pauses with which [`Pace::limit_speed`] slows virtual time: half the time of a screen frame.
 const HOLD: Span = Span(10_000);
 
 impl Pace {
@@ -68,8 +68,8 @@ impl Pace {
         }
     }
 
-    /// Slows virtual time to at most `speed` times the wall clock; never returns. When a busy machine slows the rig
-    /// down further, virtual time does not catch up afterwards.
+    /// Slows virtual time to at most `speed` times the wall clock; never returns. When a busy machine slows virtual
+    /// time further, it does not catch up afterwards.
     pub async fn limit_speed(self, speed: f64) {
         assert!(
             speed > 0.0 && speed.is_finite(),

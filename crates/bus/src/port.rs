@@ -1,4 +1,4 @@
-//! The port of a line, and serial ports whose errors tell the remedy.
+//! The port of a line, and serial ports whose errors point to the remedy.
 
 use std::io;
 use std::path::Path;
@@ -16,7 +16,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin + Send> Port for P {}
 /// Function that opens the port of a line, at the start and again after a loss.
 pub type OpenPort = Box<dyn FnMut() -> Result<Box<dyn Port>, PortError> + Send>;
 
-/// Returns a function that opens the streams of `next` one after another; it fails once `next` has no more.
+/// Returns a function that opens the streams of `next` one after another; it fails when `next` returns none.
 pub fn from_streams<P: Port + 'static>(
     mut next: impl FnMut() -> Option<P> + Send + 'static,
 ) -> OpenPort {
@@ -69,7 +69,7 @@ pub enum PortError {
     Gone,
 }
 
-/// Opens `path` for this program alone: 8N1, no flow control. Panics outside a tokio runtime with I/O.
+/// Opens `path` exclusively: 8N1, no flow control. Panics outside a tokio runtime with I/O.
 pub fn open_serial(path: &str, baud: u32) -> Result<SerialStream, PortError> {
     open_serial_with(path, baud, FlowControl::None)
 }
@@ -96,7 +96,7 @@ fn port_error(path: &str, baud: u32, error: &tokio_serial::Error) -> PortError {
     match error.kind {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Denied { path },
         _ if !exists => PortError::Missing { path },
-        // The system reports this kind for the exclusive mode of a terminal and for a file lock alike.
+        // The system reports this kind both for the exclusive mode of a terminal and for a file lock.
         ErrorKind::NoDevice => PortError::Taken { path },
         ErrorKind::InvalidInput | ErrorKind::Unknown | ErrorKind::Io(_) => PortError::Unusable {
             path,

@@ -1,4 +1,4 @@
-//! Sends one raw frame, for tools. It may hold any command, so nothing is repeated or checked.
+//! Sends one raw frame, for tools. The frame may hold any command; this module repeats and checks nothing.
 
 use super::exchange::{Exchange, Frame, FrameEnd};
 use super::{LineSettings, Pace, Port, Timer};
@@ -17,7 +17,7 @@ pub struct RawReply {
     pub taken: Span,
 }
 
-/// Sends `request`, which must include its CR, and waits for one frame, for as long as the slowest module may take.
+/// Sends `request`, which must include its CR, and waits for one frame as long as the slowest module may take.
 ///
 /// # Errors
 /// Fails when the port does.

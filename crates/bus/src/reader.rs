@@ -1,20 +1,20 @@
-//! The line of a code reader, which sends a line of text per code by itself and receives nothing.
+//! The line of a code reader, which sends one line of text per code unprompted and receives nothing.
 
 use super::{OpenPort, Pace, Port};
 use tokio::io::AsyncReadExt;
 use tokio::sync::mpsc;
 use units::Span;
 
-/// Wait before a lost port is opened again.
+/// Wait before each attempt to open a lost port again.
 const REOPEN: Span = Span::ms(1000);
-/// Greatest number of characters of a line; a longer one counts as a reading without a code.
+/// Number of characters from which a line counts as a reading without a code.
 const LONGEST: usize = 256;
 
 /// Report of a code reader.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Reading {
-    /// A line of text; `None` for the text with which the reader reports that it found no code, and for bytes that are no
-    /// text.
+    /// A line of text; `None` for the text with which the reader reports that it found no code, for a line that is too
+    /// long, and for bytes that are not text.
     Line(Option<String>),
     /// The port is open again.
     Open,
@@ -22,8 +22,8 @@ pub enum Reading {
     Lost(String),
 }
 
-/// Passes on each line that the reader sends, until the receiver is gone; reopens a lost port. `no_code` is the text of
-/// a reading without a code.
+/// Passes on each line that the reader sends, until the receiver is gone; reopens a lost port. `no_code` is the text
+/// that the reader sends for a reading without a code.
 pub async fn run_reader(
     mut open: OpenPort,
     no_code: Option<String>,
@@ -56,7 +56,7 @@ pub async fn run_reader(
     }
 }
 
-/// Returns why the port is lost; `None` when the receiver is gone.
+/// Passes on lines until the port fails; returns why the port is lost, or `None` when the receiver is gone.
 async fn read_lines(
     mut port: Box<dyn Port>,
     no_code: Option<&str>,

@@ -1,4 +1,4 @@
-//! A trace as text: the file that is stored with an alarm. `bus monitor` and tests read it back.
+//! A trace as text: the file stored with an alarm. `bus monitor` and tests read it back.
 //!
 //! ```text
 //! # line motion 115200 checksum
@@ -6,8 +6,8 @@
 //! 1207904 < >0F0034\r
 //! 1207990 ~ \x00U
 //! ```
-//! Each row begins with the rig time in microseconds; `>` marks bytes sent, `<` a reply, `~` bytes that were discarded.
-//! Non-printable bytes are written as `\r` or `\xNN`, a backslash as `\\`.
+//! Each row begins with the rig time in microseconds; `>` marks sent bytes, `<` a reply, `~` discarded bytes. The text
+//! shows non-printable bytes as `\r` or `\xNN`, a backslash as `\\`.
 
 use super::trace::{Direction, Entry, Trace};
 use std::fmt::Write;
@@ -50,7 +50,7 @@ impl Recorded {
         }
     }
 
-    /// Returns the traffic in the text format above.
+    /// Returns the traffic in the text format of this module.
     pub fn text(&self) -> String {
         let checksum = if self.checksum { "checksum" } else { "plain" };
         let mut out = format!("# line {} {} {checksum}\n", self.line, self.baud);
@@ -61,7 +61,7 @@ impl Recorded {
         out
     }
 
-    /// Reads a text in the format above.
+    /// Parses a text in the format of this module.
     pub fn parse(text: &str) -> Result<Self, RecordedError> {
         let mut rows = text.lines().enumerate();
         let head = rows.next().map_or("", |(_, row)| row);

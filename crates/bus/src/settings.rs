@@ -14,13 +14,13 @@ pub struct LineSettings {
     pub baud: u32,
     /// True when frames carry checksums. Without them a damaged digit goes unnoticed.
     pub checksum: bool,
-    /// Longest time for which a digital module may delay its reply. Modules take 2 ms, for `~AARD` up to 30 ms.
+    /// Longest time after which a digital module begins its reply. Modules take 2 ms, with `~AARD` up to 30 ms.
     pub digital_allowance_ms: u64,
-    /// Longest time for which an analog input may delay its reply; it may be in the middle of a conversion.
+    /// Longest time after which an analog input begins its reply, because it may be in the middle of a conversion.
     pub analog_allowance_ms: u64,
-    /// Longest time for which a module may delay its reply while it writes its EEPROM or changes its configuration.
+    /// Longest time after which a module begins its reply while it writes its EEPROM or changes its configuration.
     pub store_allowance_ms: u64,
-    /// Time after the time-out during which a late reply may still begin; part of the silence required after trouble.
+    /// Time after the time-out during which a late reply may still begin; part of the required silence after trouble.
     pub late_reply_ms: u64,
     /// Pause between a reply and the next request, in times of one character.
     pub turnaround_characters: u8,
@@ -50,7 +50,7 @@ impl LineSettings {
         }
     }
 
-    /// Returns the speed of the line, from which follows the time of characters on the wire.
+    /// Returns the speed of the line, which gives the time of characters on the wire.
     pub fn wire(&self) -> Wire {
         Wire { baud: self.baud }
     }
@@ -79,14 +79,14 @@ impl LineSettings {
         self.longest_reply_time(command) + Span::ms(self.late_reply_ms)
     }
 
-    /// Returns for how long the line asks a module for its name after trouble with `command`: as long as the required
-    /// silence, and at least one time-out.
+    /// Returns the time for which the line asks a module for its name after trouble with `command`: as long as the
+    /// required silence, and at least one time-out.
     pub(super) fn resynchronisation_limit(&self, command: &Command, address: Address) -> Span {
         self.silence(command)
             .max(self.time_out(&identification(address)))
     }
 
-    /// Returns how long the request takes on the wire.
+    /// Returns the time that the request takes on the wire.
     pub fn request_time(&self, command: &Command) -> Span {
         let mut request = Vec::with_capacity(24);
         command.encode(self.checksum, &mut request);
@@ -111,8 +111,8 @@ impl LineSettings {
 
 /// Returns the longest time for which one try of any of `commands` can occupy the line; zero without commands. The
 /// worst case is a reply that needs confirmation: two answers at the last moment (or three prompt ones), then the
-/// request for the module's name and a required silence that is broken once. A command that writes a setting also reads
-/// it first. A request with several tries may take this time for each try.
+/// request for the module's name and a required silence that is broken once. For a command that writes a setting, this
+/// includes reading the setting first. A request with several tries may take this time for each try.
 pub fn longest_transaction(settings: &LineSettings, commands: &[Command]) -> Span {
     let one = |command: &Command| match command.address() {
         Some(address) => {

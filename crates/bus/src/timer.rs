@@ -1,4 +1,4 @@
-//! A timer that wakes a task at an instant, finer than the milliseconds of tokio's timers.
+//! A timer that wakes a task at an instant, more precisely than the milliseconds of tokio's timers.
 
 use super::Pace;
 use rustix::time::{
@@ -10,12 +10,12 @@ use std::sync::OnceLock;
 use tokio::net::unix::pipe::Receiver;
 use units::RigTime;
 
-/// Timer of one task. At real pace a timer of the kernel wakes the task; at virtual pace, or where the kernel refuses a
-/// timer, tokio's does.
+/// Timer of one task. At real pace a kernel timer wakes the task; at virtual pace, or where the kernel refuses a timer,
+/// tokio's timer does.
 #[derive(Debug)]
 pub struct Timer {
     pace: Pace,
-    /// Timer of the kernel, created at the first wait; none at virtual pace or when the kernel refuses it.
+    /// Kernel timer, created at the first wait; `None` at virtual pace, or when the kernel refuses it.
     fd: OnceLock<Option<Receiver>>,
 }
 
@@ -44,14 +44,14 @@ impl Timer {
     }
 }
 
-/// Creates a timer of the kernel. It reads like a pipe: as soon as it has fired, eight bytes wait in it.
+/// Creates a kernel timer. It reads like a pipe: as soon as it has fired, eight bytes wait in it.
 fn kernel_timer() -> io::Result<Receiver> {
     let flags = TimerfdFlags::NONBLOCK | TimerfdFlags::CLOEXEC;
     let fd = timerfd_create(TimerfdClockId::Monotonic, flags)?;
     Receiver::from_owned_fd_unchecked(fd)
 }
 
-/// Sets the timer to fire once, after `us` microseconds; an earlier setting ends.
+/// Sets the timer to fire once, after `us` microseconds; this replaces an earlier setting.
 fn arm(fd: &Receiver, us: u64) -> io::Result<()> {
     let zero = Timespec {
         tv_sec: 0,
@@ -70,7 +70,8 @@ fn arm(fd: &Receiver, us: u64) -> io::Result<()> {
 }
 
 async fn fired(fd: &Receiver) {
-    // After an error, which every later call would return too, the task goes on: early rather than never.
+    // After an error, which every later call would return too, the wait ends: the task continues early rather than
+    // never.
     while fd.readable().await.is_ok() {
         match fd.try_read(&mut [0; 8]) {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}

@@ -8,7 +8,7 @@
 //! 3. while resynchronising: [`Transaction::resynchronise`] discards what arrives before the module names itself, or
 //!    before the line falls silent; the next transaction goes on waiting for that silence;
 //! 4. after a reply: when more bytes arrive during the turnaround ([`Transaction::rest`]), the line drops the reply and
-//!    those bytes, because either may be the late one.
+//!    those bytes, because either may be late.
 
 use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};
 use super::outstanding::{OutstandingReplies, identification};
@@ -31,13 +31,13 @@ pub(super) struct Times {
     pub(super) answered_at: Option<RigTime>,
 }
 
-/// What a transaction works on: an open port, and what the line remembers about its modules.
+/// The objects of a transaction: an open port, and what the line remembers about its modules.
 pub(super) struct Transaction<'a> {
     pub(super) exchange: Exchange<'a>,
     pub(super) settings: &'a LineSettings,
     pub(super) outstanding: &'a mut OutstandingReplies,
     pub(super) probation: &'a mut Probation,
-    /// False after trouble, until the line has been silent for long enough.
+    /// False after trouble, until the line has been silent for the required time.
     pub(super) silent: &'a mut bool,
 }
 
@@ -106,8 +106,8 @@ impl Transaction<'_> {
         result
     }
 
-    /// Counts a whole answer towards the end of the address's probation; starts the probation on a damaged one. Silence
-    /// and an echo do not show that a second module exists, so they change nothing.
+    /// Counts a whole answer towards the end of the address's probation; starts the probation at a damaged answer.
+    /// Silence and an echo change nothing, because neither shows that a second module exists.
     fn update_probation(
         &mut self,
         address: Address,
@@ -175,7 +175,7 @@ impl Transaction<'_> {
         Ok(Reply::Sent)
     }
 
-    /// Sends the request and reads the reply; rejects an answer when bytes arrive during the turnaround after it.
+    /// Sends the request and reads the reply; rejects an answer when bytes arrive during the following turnaround.
     async fn ask(
         &mut self,
         command: &Command,
@@ -203,8 +203,8 @@ impl Transaction<'_> {
         Ok(self.exchange.discard().await? == 0)
     }
 
-    /// Returns true when the module confirms its reply: it repeats it and then names itself, with no other bytes in
-    /// between.
+    /// Returns true when the module confirms its reply: it repeats the reply and then names itself, with no other bytes
+    /// in between.
     async fn confirm(
         &mut self,
         command: &Command,
@@ -227,7 +227,7 @@ impl Transaction<'_> {
     }
 
     /// Asks the module for its name until it answers, for as long as the required silence would last. Returns true when
-    /// it answered and no other bytes arrived. A reply of `address` that may still arrive stays outstanding.
+    /// it answered and no other bytes arrived. Otherwise a reply of `address` that may still arrive stays outstanding.
     async fn resynchronise(
         &mut self,
         command: &Command,
@@ -238,8 +238,8 @@ impl Transaction<'_> {
         let mut alone = true;
         let limit = self.now() + self.settings.resynchronisation_limit(command, address);
         let name_time_out = self.settings.time_out(&identification(address));
-        // At least one round, because the clock advances between two lines of code. Each round lasts from some
-        // microseconds to one time-out, so the limit ends the loop.
+        // The loop runs at least once, because the clock may advance between two lines of code. Each round lasts from
+        // some microseconds to one time-out, so that the limit ends the loop.
         let last_heard = loop {
             let ask_name = self.outstanding.identification(address);
             self.outstanding.add(ask_name, self.now());

@@ -1,4 +1,4 @@
-//! Makes messages of requests and replies: `locale/*.ftl` has a text for every [`Description`] of `dcon`.
+//! Makes messages for requests and replies: `locale/*.ftl` has a text for every [`Description`] of `dcon`.
 
 use dcon::{Command, Description, Model, Reply, ReplyError};
 use texts::{Args, Lang, Message};

@@ -10,7 +10,7 @@ use machine::form::{Form, Key, Points, Range};
 use machine::rig::fault::{Fault, Requirement};
 use std::path::PathBuf;
 
-/// Faults in the order of the file, those of missing keys after the others of their table.
+/// Faults in the order of the file; within a table, missing keys come last.
 pub type Faults = Vec<ConfigError>;
 
 /// A parsed file.
@@ -188,7 +188,7 @@ impl File {
             }
         }
         for missing in points.must.iter().filter(|name| node.get(name).is_none()) {
-            // A free name that resembles a missing one is a typing error.
+            // A free name that resembles a missing one is a misspelling.
             faults.extend(match (points.free, slip(entries, &names, missing)) {
                 (true, Some(name)) => Some(self.unknown(path, name, &names)),
                 (false, Some(_)) => None,
@@ -197,8 +197,8 @@ impl File {
         }
     }
 
-    /// Reports each missing name of `needed`, except one that an unknown name resembles: that typing error is reported
-    /// already.
+    /// Reports each missing name of `needed`, except a name that some unknown entry resembles: the check of that entry
+    /// has already reported the misspelling.
     fn needed<'a>(
         &self,
         path: &str,
@@ -262,7 +262,7 @@ impl File {
     }
 }
 
-/// Returns the name among `entries` that is unknown and, by a slip of typing, resembles `missing`.
+/// Returns the unknown name among `entries` that looks like a misspelling of `missing`; `None` when there is none.
 fn slip<'a>(entries: &'a [(String, Node)], names: &[&str], missing: &str) -> Option<&'a str> {
     let mut others = entries.iter().map(|(name, _)| name.as_str());
     others.find(|name| !names.contains(name) && nearest(name, &[missing]).is_some())

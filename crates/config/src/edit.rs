@@ -125,7 +125,7 @@ fn remove_key(root: &mut Item, path: &str) {
     }
 }
 
-/// Splits a path into the names of its tables, or places in lists, and the key in the innermost table.
+/// Splits a path into the names and list indexes that lead to the innermost table, and the key in that table.
 fn split_path(path: &str) -> (impl Iterator<Item = &str>, &str) {
     let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
     (tables.split('.').filter(|it| !it.is_empty()), key)

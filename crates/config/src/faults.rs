@@ -36,8 +36,8 @@ impl fmt::Display for ConfigFaults {
     }
 }
 
-/// Checks all files of `folder`. Values are compared with each other only in a file whose keys are right, and a recipe is
-/// compared with the rig only when the files of the rig are right.
+/// Checks all files of `folder`. Compares values with each other only in a file whose keys are right, and a recipe with
+/// the rig only when the files of the rig are right.
 ///
 /// # Errors
 /// Fails with every fault found.
@@ -67,7 +67,7 @@ pub fn check_all(folder: &Folder) -> Result<Plant, ConfigFaults> {
     }
 }
 
-/// Faults found so far; one that two checks find is kept once.
+/// Faults found so far; a fault that two checks find is kept once.
 #[derive(Default)]
 struct Found {
     faults: Faults,

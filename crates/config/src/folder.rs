@@ -25,7 +25,7 @@ pub enum Folder {
 #[derive(Debug, Clone)]
 pub struct Memory {
     files: Arc<Mutex<BTreeMap<String, Kept>>>,
-    /// Held while a revision changes files.
+    /// Lock held while a revision changes files.
     changing: Arc<Mutex<()>>,
 }
 
@@ -71,7 +71,7 @@ impl Folder {
     /// Checks that a directory exists.
     ///
     /// # Errors
-    /// Fails without one; the message names the command that writes a configuration.
+    /// Fails when the directory does not exist; the message names the command that writes a configuration.
     pub fn check_exists(&self) -> Result<(), ConfigError> {
         match self {
             Self::Directory(dir) if !dir.exists() => {
@@ -81,7 +81,7 @@ impl Folder {
         }
     }
 
-    /// Reads and parses a file; when the file is missing, the message says that `expected` should be in it.
+    /// Reads and parses a file. `expected` says in the message about a missing file what it should hold.
     pub(super) fn file(&self, name: &str, expected: &'static str) -> Result<File, ConfigError> {
         self.check_exists()?;
         let file = self.path(name);
@@ -112,8 +112,8 @@ impl Folder {
         }
     }
 
-    /// Returns media type and bytes of a picture directly in `pictures`; `None` without such a PNG, JPEG or SVG file, and
-    /// of files in memory.
+    /// Returns media type and bytes of a PNG, JPEG or SVG file directly in `pictures`; `None` when there is no such
+    /// file, and for files in memory.
     pub fn picture(&self, name: &str) -> Option<(&'static str, Vec<u8>)> {
         let Self::Directory(dir) = self else {
             return None;
@@ -131,8 +131,8 @@ impl Folder {
         Some((media, bytes))
     }
 
-    /// Returns the names of the TOML files directly in `below`, without their ending, sorted; none when it cannot be
-    /// read.
+    /// Returns the names of the TOML files directly in the folder `below`, without their extension, sorted; none when
+    /// the folder cannot be read.
     pub(super) fn stems(&self, below: &str) -> Vec<String> {
         let names: Vec<String> = match self {
             Self::Directory(dir) => {
@@ -179,7 +179,7 @@ impl Folder {
         i64::try_from(since.as_micros()).ok()
     }
 
-    /// Runs `change` while no other change runs, in this program or, for a directory, in another one.
+    /// Runs `change` while no other change runs in this program nor, for a directory, in another program.
     pub(super) fn alone<T>(&self, change: impl FnOnce() -> T) -> std::io::Result<T> {
         match self {
             Self::Directory(dir) => {
@@ -205,7 +205,7 @@ impl Memory {
             .collect()
     }
 
-    /// Locks the files. A poisoned lock is safe: a change is one insertion.
+    /// Locks the files. A poisoned lock does no harm, because a change is a single insertion.
     fn files(&self) -> MutexGuard<'_, BTreeMap<String, Kept>> {
         self.files.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,8 +1,8 @@
 //! Writes the configuration that is compiled into the program as a directory of its own.
 //!
-//! The files are written to a hidden directory and moved from there when all are on the disk, so that no half-written
-//! configuration is left: beside a directory that does not exist yet, inside an empty one, which may be the working
-//! directory or the root of a file system.
+//! Writes the files to a hidden directory and moves them from there when all are on the disk, so that no half-written
+//! configuration is left. The hidden directory lies beside a target that does not exist yet, but inside an empty
+//! target, which may be the working directory or the root of a file system.
 
 use super::built_in::BUILT_IN;
 use std::collections::BTreeSet;

@@ -18,8 +18,9 @@
 //! 3. The values must fit together (no address used twice, low not above high); the module that owns the settings
 //!    checks that.
 //!
-//! The files are those of a [`Folder`]: a directory, or files in memory that begin as the copy of `config/` in the program.
-//! [`init()`] writes that copy to a directory. The controller does not read `sim.toml`, which describes the simulated world.
+//! The files are those of a [`Folder`]: a directory, or files in memory that begin as the copy of `config/` in the
+//! program. [`init()`] writes that copy to a directory. The controller does not read `sim.toml`, which describes the
+//! simulated world.
 //!
 //! ```
 //! use config::{Folder, Plant, load_recipe};

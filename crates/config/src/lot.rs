@@ -1,5 +1,5 @@
-//! Loads `lot.toml`, the gates of a lot: reference checks, reject-rate limit, first articles, wear limits, and the source
-//! of serial numbers. Without the file a lot has none of them.
+//! Loads `lot.toml`, the gates of a lot: reference checks, reject-rate limit, first articles, wear limits, and the
+//! source of serial numbers. Without the file a lot has none of them.
 
 use super::error::ConfigError;
 use super::folder::Folder;
@@ -32,7 +32,7 @@ pub(super) fn load_lot(folder: &Folder) -> Result<LotSettings, ConfigError> {
     }
 }
 
-/// Reads the prompts of every lot, which `lot.toml` has.
+/// Reads the prompts of every lot from `lot.toml`.
 ///
 /// # Errors
 /// Fails when the file cannot be read or has a faulty key.
@@ -40,7 +40,7 @@ pub fn prompts_of_lots(folder: &Folder) -> Result<Vec<Prompt>, ConfigError> {
     load_lot(folder).map(|lot| lot.prompts)
 }
 
-/// Checks that a rig whose lots take their serial numbers from a reader has one.
+/// Checks that the rig has a code reader if its lots take their serial numbers from one.
 pub(super) fn check_reader(
     folder: &Folder,
     lot: &LotSettings,

@@ -1,9 +1,9 @@
-//! Suggests the known word that a mistyped one resembles.
+//! Suggests the known word that a misspelt word resembles.
 
 use strsim::levenshtein;
 
-/// Returns the word in `known` that is nearest to `word`; `None` when that takes more edits than a third of its
-/// characters, or more than 2 in a short word.
+/// Returns the word in `known` that is nearest to `word`; `None` when even that word is more edits away than a third of
+/// the characters of `word`, at least 2 edits.
 pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let reach = (word.chars().count() / 3).max(2);
     known
@@ -14,7 +14,7 @@ pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         .map(|(_, candidate)| candidate)
 }
 
-/// Returns the suggestion as a message shows it: the nearest word as a question.
+/// Returns the suggestion as a message shows it: the nearest word in quotes with a question mark.
 pub(super) fn suggestion(near: &str) -> String {
     format!("\"{near}\"?")
 }

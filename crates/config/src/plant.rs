@@ -42,7 +42,7 @@ pub struct Plant {
     pub reference_parts: ReferenceSet,
     /// Gates of a lot: reference checks, reject-rate limit, first articles, wear limits.
     pub lot: LotSettings,
-    /// Time-out of a history that cannot be written; how long traces of alarms stay.
+    /// Longest outage of the history, and how long the traces of alarms are kept.
     pub history: HistorySettings,
     /// Code reader at the pocket, if the rig has one.
     pub serial_reader: Option<SerialReaderSettings>,
@@ -55,10 +55,10 @@ pub struct SerialReaderSettings {
     pub port: String,
     /// Bits per second.
     pub baud: u32,
-    /// Longest time from the arrival of a part to its code, ms.
+    /// Longest time from the arrival of a part to the reading of its code, ms.
     #[serde(default = "usual_timeout_ms")]
     pub timeout_ms: f64,
-    /// Text of a reading without a code.
+    /// Text that the reader sends when it finds no code, for example `NOREAD`.
     pub no_code: Option<String>,
 }
 
@@ -66,15 +66,15 @@ fn usual_timeout_ms() -> f64 {
     1000.0
 }
 
-/// Time-out of a history that cannot be written; how long the traces of alarms beside it stay.
+/// Longest outage of the history, and how long the traces of alarms beside it are kept.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct HistorySettings {
-    /// Time after which the program ends, s.
+    /// Time for which writing the history may fail before the program ends, s.
     pub give_up_s: f64,
-    /// Number of alarms whose traces stay.
+    /// Number of newest alarms whose traces are kept.
     pub traces: u32,
-    /// Time for which the traces of an alarm stay, days.
+    /// Time for which the traces of an alarm are kept, days.
     pub trace_days: u32,
 }
 
@@ -132,7 +132,7 @@ impl Plant {
         })
     }
 
-    /// Returns wiring, references and accuracies: all of the rig that matters for a measurement.
+    /// Returns wiring, references and accuracies: the part of the configuration that measurements depend on.
     pub fn rig(&self) -> Rig<'_> {
         Rig {
             wiring: &self.wiring,
@@ -220,8 +220,8 @@ fn load_reference_parts(folder: &Folder, name: &str) -> Result<ReferenceSet, Con
     Ok(set)
 }
 
-/// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an empty
-/// rig.
+/// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an
+/// empty rig.
 pub(super) fn load_scene(folder: &Folder) -> Result<GuardSettings, ConfigError> {
     let file = folder.file("scene.toml", "the bodies around the nest")?;
     let settings: GuardSettings =

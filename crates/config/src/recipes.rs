@@ -57,14 +57,14 @@ struct RecipeRule {
     approval: Approval,
 }
 
-/// Engineers who must answer for a recipe before a lot may use it.
+/// Number of engineers who must have saved or approved a recipe before a lot may use it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Approval {
-    /// None.
+    /// None is required.
     #[default]
     None,
-    /// Two: one who saved the text or approved it, and another who approved it.
+    /// Two: one who saved the text or approved it, and a second one who approved it.
     SecondPerson,
 }
 

@@ -1,13 +1,14 @@
 //! Revisions of a recipe: the newest is `recipes/NAME.toml`, earlier ones lie in `recipes/revisions/NAME/`, numbered
 //! from 1.
 //!
-//! - A new recipe begins as another one, with a name and values of its own; it is the first revision under its name.
+//! - A new recipe starts as a copy of another one, with a name and values of its own; its text is revision 1.
 //! - A revision changes values of the newest text; comments and order of the file stay.
 //! - A revision passes the same checks as a recipe before a run; these include what the modules of the plant can
 //!   measure. A refused revision changes no file.
-//! - A change names, by hash, the text that it is based on. It is refused when another revision has come in between.
-//! - The old text is stored first, then a rename puts the new one in its place. After a crash between these two steps
-//!   the newest text is stored twice, under one number.
+//! - A change names, by hash, the text that it is based on. The change is refused when that text is no longer the
+//!   newest.
+//! - The program stores the old text first, then a rename puts the new one in its place. After a crash between these
+//!   two steps the newest text is stored twice, under one number.
 //! - The folder is locked while files change, so that two programs cannot interfere.
 //!
 //! A run reads its recipe once, before it begins, so a revision never changes a lot under way.
@@ -58,8 +59,8 @@ pub struct Change {
     /// Why the values change; not blank.
     #[schema(example = "the customer tightened the limit")]
     pub reason: String,
-    /// Name of a new recipe that the values make; `name` then stays as it is. Absent: the values make the next revision of
-    /// `name`.
+    /// Name of a new recipe to make from `name` with these values; `name` itself does not change. When absent, the
+    /// values make the next revision of `name`.
     #[serde(default)]
     #[schema(example = "jzc-22f-012-special")]
     pub save_as: Option<String>,
@@ -231,7 +232,8 @@ fn earlier_revisions(folder: &Folder, name: &str) -> Vec<u32> {
     numbers
 }
 
-/// Returns the number of the newest revision, whose text is `text`; `kept` are the numbers of the earlier ones.
+/// Returns the number of the newest revision, whose text is `text`; `kept` are the numbers of the stored earlier
+/// revisions.
 fn number_of(folder: &Folder, name: &str, kept: &[u32], text: &str) -> u32 {
     let Some(last) = kept.last() else {
         return 1;

@@ -13,8 +13,8 @@ use utoipa::ToSchema;
 /// One key of a recipe, with its value.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Field {
-    /// Path of the key, for example `limits.operate_voltage_v.high`; in a list with the place of the item, from 0, as in
-    /// `prompt.0.text_en`.
+    /// Path of the key, for example `limits.operate_voltage_v.high`; in a list with the place of the item, from 0, as
+    /// in `prompt.0.text_en`.
     pub path: String,
     /// Values that the key accepts.
     #[serde(flatten)]
@@ -88,8 +88,8 @@ impl From<&Range> for Bounds {
     }
 }
 
-/// Returns every key that a recipe of this kind may have, in the order of `config/README.md`, with the value in the
-/// file; of a list, the keys of the items that the file has.
+/// Returns every key that a recipe of this kind may have, in the order of `config/README.md`, with its value in the
+/// file. For a list of tables, returns the keys of each item that the file has.
 ///
 /// # Errors
 /// Fails when the kind is missing or unknown.

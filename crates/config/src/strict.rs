@@ -59,7 +59,8 @@ impl Unreadable {
         }
     }
 
-    /// Names the member at fault, which serde hides inside an enum with a tag: without its value the error is another.
+    /// Adds the name of the member at fault, which serde does not report for an enum with a tag: the fault lies in the
+    /// first member that, replaced by null, gives no error or another one.
     fn in_one_of<T: DeserializeOwned>(self, members: Vec<(String, Json)>) -> Self {
         let is_at_fault = |at: &usize| {
             let mut without = members.clone();
@@ -136,7 +137,7 @@ impl Error for Unreadable {
     }
 }
 
-/// A JSON value from which serde reads a type. Repeated members stay, so that the type refuses them.
+/// A JSON value from which serde reads a type. It keeps repeated members, so that the type refuses them.
 #[derive(Clone, Deserialize)]
 #[serde(untagged)]
 enum Json {

@@ -1,4 +1,5 @@
-//! Takes the answers of the lines: values go into the process image, trouble becomes an alarm of the next step.
+//! Takes the answers of the lines: stores their values in the process image, and turns trouble into alarms that the
+//! station receives in its next step.
 
 use super::Cycle;
 use super::traffic::Purpose;
@@ -13,17 +14,17 @@ use units::{RigTime, Span};
 pub(super) struct AnswerTrouble {
     /// Message of family `transaction`.
     transaction: Message,
-    /// Number of tries.
+    /// Number of tries made.
     used: u8,
-    /// Largest number of tries.
+    /// Largest number of tries that the line makes.
     tries: u8,
     /// Lateness of this computer, when it explains why a reply is missing.
     late: Option<Span>,
 }
 
 impl AnswerTrouble {
-    /// Returns the trouble of a failed transaction; `late` is the lateness of this computer if it is long enough to
-    /// explain a missing reply.
+    /// Returns the trouble of a failed transaction; `late` is the lateness of this computer, given only if it is long
+    /// enough to explain a missing reply.
     pub(super) fn of(error: &LineError, used: u8, tries: u8, late: Option<Span>) -> Self {
         Self {
             transaction: error.message(),
@@ -51,7 +52,7 @@ impl AnswerTrouble {
         self.alarm_with(&self.detail("tried"))
     }
 
-    /// Returns the alarm after this number of consecutive failures.
+    /// Returns the alarm for this trouble after `times` consecutive failures.
     fn repeated(&self, times: u8) -> Alarm {
         assert!(times > 0, "a failure that was not counted");
         self.alarm_with(&self.detail("tried_in_a_row").with("times", times))
@@ -76,8 +77,8 @@ impl Cycle {
             answer.answered_at >= answer.requested_at,
             "an answer precedes its request"
         );
-        // Reading the reset status clears it, so the read cannot be repeated: when its reply is lost, the
-        // module may have restarted while it measured the part, and the part is void.
+        // Reading the reset status clears it, so nothing can repeat the read: when its reply is lost, the module may
+        // have restarted unnoticed while it measured the part, and the part is void.
         let is_status = matches!(
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)
@@ -158,7 +159,7 @@ impl Cycle {
         }
     }
 
-    /// Keeps an alarm of a line or module for the next step of the station; of the same alarms of a turn, the first.
+    /// Keeps an alarm of a line or module for the next step of the station; drops it if the same alarm waits already.
     pub(super) fn note_alarm(&mut self, alarm: Alarm) {
         if !self.bus_alarms.iter().any(|it| it.is_same(&alarm)) {
             self.bus_alarms.push(alarm);
@@ -166,7 +167,8 @@ impl Cycle {
     }
 }
 
-/// Returns true for a failure that a late computer causes: it misses a reply, and meets it after the next request.
+/// Returns true for a failure that lateness of this computer can cause: a reply that it misses, or one that it reads
+/// only after the next request.
 fn comes_of_lateness(failure: &Failure) -> bool {
     match failure {
         Failure::TimeOut(_) | Failure::OutOfStep | Failure::SecondReply => true,

@@ -1,6 +1,5 @@
 //! Compares the name and the settings of every module with the wiring, before anything moves. The outputs are still
-//! safe, so the emergency stop need not be polled yet, and a request may be repeated as often as the bus settings
-//! allow.
+//! safe, so nothing polls the emergency stop yet, and a line may repeat a request as often as the bus settings allow.
 
 use super::answers::AnswerTrouble;
 use super::lateness::Lateness;
@@ -15,7 +14,7 @@ use std::collections::{BTreeMap, VecDeque};
 use texts::Message;
 use units::Span;
 
-/// Longest wait without a look at the clock; a stall of this computer shows in the next look.
+/// Longest wait before the verification checks the clock again, so that it measures a stall of this computer.
 const LOOK: Span = Span::ms(5);
 
 /// A setting that an interrupted run of the controller left in a module.
@@ -34,7 +33,7 @@ enum Setting {
     Masked,
 }
 
-/// What the verification uses of the cycle.
+/// The verification of all modules, with the parts of the cycle that it uses.
 pub struct Verification<'a> {
     pub wiring: &'a Wiring,
     pub pace: &'a Pace,
@@ -44,8 +43,9 @@ pub struct Verification<'a> {
 }
 
 impl Verification<'_> {
-    /// Reads all settings, on all lines in parallel; fails with an alarm at the first mismatch or silent module. Restores
-    /// the settings that an interrupted run of the controller left behind; returns alarms that name their modules.
+    /// Reads all settings, on all lines in parallel; fails with an alarm at the first mismatch or silent module.
+    /// Restores the settings that an interrupted run of the controller left behind; returns alarms that name their
+    /// modules.
     pub async fn run(&mut self) -> Result<Vec<Alarm>, Alarm> {
         let left = self.ask().await?;
         if left.is_empty() {
@@ -151,8 +151,8 @@ impl Verification<'_> {
     }
 }
 
-/// Returns the leftover that explains a wrong reply; `None` when the controller did not cause it. `remedy` is the
-/// command that corrects the setting.
+/// Returns the leftover that explains a wrong reply; `None` when the controller did not cause the wrong setting.
+/// `remedy` is the command that corrects it.
 fn leftover(
     wiring: &Wiring,
     check: &Check,

@@ -20,11 +20,11 @@ pub enum Event {
     State(packml::State),
     /// A part was judged; it has a verdict now.
     Judged(Box<Judged>),
-    /// The beam of a bin saw the part.
+    /// The beam of a bin detected the falling part.
     Landed(Landed),
     /// The part left the nest.
     Left(NestExit),
-    /// A judged part goes to retest despite its verdict.
+    /// A judged part goes to retest despite its verdict, because its way to the bin was interrupted.
     Interrupted(Interrupted),
     /// An alarm occurred, at this rig time.
     Alarm(Alarm, RigTime),
@@ -32,7 +32,7 @@ pub enum Event {
     ListedAlarms(Vec<ListedAlarm>, RigTime),
     /// The rig is calibrated: references and reference parts are measured.
     Calibrated(Box<Calibration>),
-    /// Rig or parts scatter more than promised; later parts have the larger uncertainty.
+    /// Rig or parts scatter more than promised; budgets of later parts use the larger standard deviation.
     PromiseBroken(Broken),
     /// A reference check ended with this result, at this rig time.
     Checked(Checked, RigTime),
@@ -41,7 +41,7 @@ pub enum Event {
     /// Parts moved inside the machine: its contents, and the use counts of the wearing parts since the start of the
     /// run.
     Inside(Inside, Uses),
-    /// A prompt opened, which waits for the order `answer`.
+    /// A prompt opened; it waits for the order `answer`.
     Prompted(Box<Prompt>),
     /// The lot itself began, after calibration and reference parts, at this rig time.
     LotBegan(RigTime),

@@ -51,7 +51,7 @@ impl Lateness {
         self.windows[0].max(self.windows[1])
     }
 
-    /// Returns the worst lateness of the last one to two seconds when it explains a missing or late reply.
+    /// Returns [`Self::recent`] if it is long enough to explain a missing or late reply, else `None`.
     pub fn explaining(&self, wiring: &Wiring) -> Option<Span> {
         let recent = self.recent();
         (recent >= wiring.explaining_lateness()).then_some(recent)

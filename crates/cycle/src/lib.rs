@@ -3,7 +3,9 @@
 //! ```text
 //! scan -> step -> clear -> apply -> record -> publish
 //! ```
-//! `step` decides; `clear` asks the guard whether each motion is free of collisions.
+//! `scan` stores the answers of the lines, `step` lets the station decide, `clear` asks the guard whether each motion
+//! is free of collisions, `apply` turns outputs into commands, `record` sends events to the history, `publish` builds
+//! the view for the screens.
 //!
 //! One task owns the process image, the outputs, the guard and the station; each line is a task of its own with a queue
 //! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step requested.
@@ -77,11 +79,11 @@ const IDLE: Span = Span::ms(50);
 pub struct CycleLinks {
     /// Carries events to the history; unbounded, but the parts inside the machine limit how many can wait.
     pub events: mpsc::UnboundedSender<Event>,
-    /// Ordinal of the last part that is safely on the disk; the history sets it.
+    /// Ordinal of the last part whose record is safely on the disk; the history sets it.
     pub recorded: Arc<AtomicU64>,
-    /// The operator sets it to stop the lot after the parts inside.
+    /// True once the operator stops the lot; the parts inside the machine are finished first.
     pub stop: Arc<AtomicBool>,
-    /// The operator sets it to stop the lot at once.
+    /// True once the operator stops the lot at once.
     pub abort: Arc<AtomicBool>,
     /// Orders of screens, each with the channel for its answer.
     pub orders: mpsc::Receiver<OrderRequest>,
@@ -89,9 +91,9 @@ pub struct CycleLinks {
     pub epoch_us: i64,
     /// State of the history; the recorder sets it.
     pub history: watch::Receiver<HistoryState>,
-    /// Carries the readings of the code reader; none in a lot without one.
+    /// Carries the readings of the code reader; `None` in a lot without one.
     pub readings: Option<mpsc::Receiver<Reading>>,
-    /// Carries snapshots to the screens; none on a rig without a screen.
+    /// Carries snapshots to the screens; `None` on a rig without a screen.
     pub snapshots: Option<mpsc::Sender<Snapshot>>,
 }
 
@@ -141,17 +143,18 @@ pub struct Cycle {
     /// Order of the jog under way, which the cycle answers when the motion ends.
     jogging: Option<OrderRequest>,
     orders_closed: bool,
-    /// Readings since the last turn.
+    /// Readings of the code reader since the last turn; `None` for a reading without a code.
     readings: Vec<Option<String>>,
-    /// Alarm of a code reader whose port is lost.
+    /// Alarm about the code reader while its port is lost.
     reader: Option<Alarm>,
     verified: bool,
     publish_at: RigTime,
     /// State of the whole rig (PackML) in the last event sent.
     published_state: packml::State,
-    /// Reason why a scan lost a reset status; a module of the measuring line may have restarted unnoticed.
+    /// Reason why the scan failed to read a reset status on a measuring line. The lost read may have cleared the sign
+    /// of a restart, so the next job that reads a reset status fails for this reason.
     lost_status: Option<Message>,
-    /// Contents of the machine in the last event sent; the next run takes them over.
+    /// Contents of the machine in the last event sent.
     inside: Inside,
     /// Longest age that the emergency-stop input has reached so far.
     worst_age: Span,
@@ -162,7 +165,7 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Takes over the lines; writes nothing before [`Cycle::run`].
+    /// Takes over the lines, one for each line of the wiring; writes nothing before [`Cycle::run`].
     pub fn new(
         wiring: Arc<Wiring>,
         pace: Pace,
@@ -256,7 +259,8 @@ impl Cycle {
         }
     }
 
-    /// Stores the answers that have arrived in the process image.
+    /// Stores the answers that have arrived in the process image, reports modules that have restarted, and collects the
+    /// readings of the code reader.
     fn scan(&mut self, now: RigTime) {
         assert!(now >= self.turned_at, "rig time ran backwards");
         self.turned_at = now;
@@ -431,13 +435,15 @@ impl Cycle {
         }
     }
 
-    /// Returns the first instant at which the last poll of the emergency-stop contact is too old; `None` once it is.
+    /// Returns the first instant at which the last poll of the emergency-stop contact is too old; `None` if it is too
+    /// old already.
     fn contact_unknown(&self, now: RigTime) -> Option<RigTime> {
         let until = self.image.emergency_stop_known_until()?;
         (until >= now).then_some(until + Span(1))
     }
 
-    /// Waits for an answer, for `wake_at`, or for the next scan, whichever comes first.
+    /// Waits for an answer, an order or a code reading, at most until `wake_at`, the next scan or heartbeat, or the
+    /// instant at which the last poll of the emergency-stop contact is too old.
     async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
         assert!(wake_at.is_none_or(|at| at > now), "a deadline in the past");
         let until = wake_at

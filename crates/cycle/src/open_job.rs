@@ -5,7 +5,7 @@ use machine::rig::wiring::ModuleId;
 use texts::Message;
 use units::RigTime;
 
-/// A measuring job under way; it ends when its last transaction ends.
+/// A measuring job under way; it ends with the last of its transactions.
 #[derive(Debug, Default)]
 pub(super) struct OpenJob {
     parts: usize,
@@ -19,7 +19,7 @@ impl OpenJob {
         self.parts += 1;
     }
 
-    /// Closes the transaction of a lost write; the job then waits for the repetition of this write, which begins later.
+    /// Closes the transaction of a lost write; the job stays open until the cycle has repeated this write.
     pub(super) fn rewrites(&mut self, module: ModuleId) {
         self.parts = self.parts.saturating_sub(1);
         self.rewrites.push(module);
@@ -32,7 +32,8 @@ impl OpenJob {
         before != self.rewrites.len()
     }
 
-    /// Closes one transaction and keeps the first trouble; after the last transaction, returns the result of the job.
+    /// Closes one transaction and keeps the first trouble; returns the result of the job after the last transaction,
+    /// else `None`.
     pub(super) fn part_done(&mut self, at: RigTime, trouble: Option<Message>) -> Option<JobDone> {
         self.parts = self.parts.saturating_sub(1);
         self.last = at;
@@ -42,7 +43,7 @@ impl OpenJob {
         self.if_empty(self.last)
     }
 
-    /// Returns the result of a job without open transactions.
+    /// Returns the result of the job; `None` while a transaction is open.
     pub(super) fn if_empty(&self, at: RigTime) -> Option<JobDone> {
         (self.parts == 0).then(|| JobDone {
             at,

@@ -12,10 +12,10 @@ use units::RigTime;
 /// Origin of an order given with a button at the machine.
 pub const PANEL: &str = "panel";
 
-/// Answer to the order of a motion by hand that ended before its sensors showed the end.
+/// Answer to a jog whose motion ended before the sensors showed its end position.
 const NOT_ARRIVED: Result<Option<Message>, Refused> = Err(Refused::NotArrived);
 
-/// Returns the refusal by the program, before the order reached the station.
+/// Returns the refusal of an order that the program denied before it reached the station; `None` for any other order.
 fn denied(asked: &OrderRequest) -> Option<Refused> {
     let why = asked.denied.clone()?;
     Some(Refused::Denied(Box::new(why)))
@@ -62,7 +62,8 @@ impl Cycle {
         self.end_jog(now);
     }
 
-    /// Refuses the orders that the end of a run leaves unanswered: the jog under way, and orders that came since.
+    /// Refuses the orders that the end of a run leaves unanswered: the jog under way, and orders that have arrived
+    /// since.
     pub(super) fn answer_the_rest(&mut self, now: RigTime) {
         if let Some(asked) = self.jogging.take() {
             self.send_answer(asked, NOT_ARRIVED, now);
@@ -76,7 +77,7 @@ impl Cycle {
         }
     }
 
-    /// Answers the order of a motion by hand once the motion has ended.
+    /// Answers the jog under way once its motion has ended.
     fn end_jog(&mut self, now: RigTime) {
         let end = self.station.take_jog_end(now, &self.image);
         let Some((end, asked)) = end.and_then(|end| Some((end, self.jogging.take()?))) else {
@@ -122,7 +123,7 @@ impl Cycle {
         asked.answer(said);
     }
 
-    /// Drives a motion ordered by hand; a refusal is the answer to the order, not an alarm.
+    /// Drives a jog; a refusal by the guard becomes the answer to the order and raises no alarm.
     pub(super) fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
         let situation = self.station.situation(now, &self.image);
         let cleared = self

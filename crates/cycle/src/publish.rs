@@ -18,7 +18,7 @@ use units::{RigTime, Span};
 /// Shortest time between two views.
 pub const PACE: Span = Span::ms(50);
 
-/// Returns the order for the station; refuses an incomplete one, and one that does not concern the rig.
+/// Translates an order of a screen for the station; refuses an incomplete order, and one that only changes the history.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
     use view::Order as From;
     let command = |it| Ok(Order::Command(it));
@@ -63,7 +63,7 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 }
 
 impl Cycle {
-    /// Sends a snapshot at most once per [`PACE`], the `last` one at any time; none on a rig without a screen.
+    /// Sends a snapshot to the screens, at most one per [`PACE`]; the `last` snapshot goes out at any time.
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
         let Some(snapshots) = self.links.snapshots.clone() else {
             return;

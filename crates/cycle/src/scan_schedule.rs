@@ -1,13 +1,14 @@
 //! Chooses what the scan of a line polls next.
 //!
 //! Every second transaction polls the module with the emergency-stop contact; even a write waits for that poll. The
-//! transactions between them alternate between the beam of the awaited bin and the other modules, and every sixteenth
-//! of them reads the reset status of a module. When an actuator is not where it should be, the scan first reads the
-//! reset status of all modules. Each list has a counter of its own, so no list starves another.
+//! transactions between these polls alternate between the beam of the awaited bin and the other modules; every
+//! sixteenth of them instead reads the reset status of a module. When an actuator is not where it should be, the scan
+//! first reads the reset status of all modules. Each list has its own counter, so no list starves another.
 
 use dcon::Command;
 
-/// One transaction in this many, polls of the emergency-stop contact not counted, reads the reset status of a module.
+/// Of this number of transactions, polls of the emergency-stop contact not counted, one reads the reset status of a
+/// module.
 const RESET_EVERY: usize = 16;
 
 /// Schedule of the scan of one line.
@@ -57,7 +58,7 @@ impl ScanSchedule {
         }
     }
 
-    /// Returns the poll of the emergency-stop contact when it is due; it is then no longer due.
+    /// Returns the poll of the emergency-stop contact if it is due, and marks it as no longer due.
     pub(super) fn contact(&mut self) -> Option<Command> {
         let is_due = std::mem::take(&mut self.contact_is_due);
         self.priority.filter(|_| is_due)

@@ -1,4 +1,4 @@
-//! Brings the cycle's parts of a view to the screens, through a channel, so that no screen delays the cycle.
+//! Passes the cycle's parts of a view to the screens through a channel, so that no screen delays the cycle.
 
 use machine::view::{AlarmLine, LatenessView, Machine, View};
 use tokio::sync::{mpsc, watch};
@@ -14,7 +14,8 @@ pub struct Snapshot {
     pub(super) doing: String,
     pub(super) stage: Option<&'static str>,
     pub(super) inside: u64,
-    /// Parts fed and parts confirmed; none between lots, so that the screen keeps the results of the last lot.
+    /// Numbers of parts that came in and that went out; `None` between lots, so that the screen keeps those of the last
+    /// lot.
     pub(super) counts: Option<(u64, u64)>,
     pub(super) alarms: Vec<AlarmLine>,
     pub(super) machine: Machine,

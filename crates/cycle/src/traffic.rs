@@ -1,7 +1,8 @@
-//! Chooses the next transaction of a line: writes first, then the heartbeat, the measuring job, the scan.
+//! Chooses the next transaction of a line: the poll of the emergency-stop contact when it is due, then writes, the
+//! heartbeat, the measuring job, the scan.
 //!
-//! Every line has at most one transaction under way. Every second transaction of a line's scan polls the module with
-//! the emergency-stop contact ([`super::scan_schedule`]).
+//! Every line has at most one transaction under way. Every second transaction of the contact's line polls the module
+//! with the contact ([`super::scan_schedule`]).
 
 use super::open_job::OpenJob;
 use super::scan_schedule::{ScanPoll, ScanSchedule};
@@ -30,8 +31,8 @@ fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
         .collect()
 }
 
-/// Returns the modules of a line, by address, that carry inputs of the machine or beams of bins. Inputs of a fixture
-/// are not scanned; a test reads them itself.
+/// Returns the modules of a line, by address, that carry inputs of the machine or beams of bins. The scan omits the
+/// inputs of a fixture, which a test reads itself.
 fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
     let machine = DigitalIn::ALL.iter().copied().map(DigitalInput::from);
     let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
@@ -92,12 +93,13 @@ pub struct Traffic {
     scan_period: Span,
     job: Option<OpenJob>,
     beam: Option<Command>,
-    /// True while an actuator is not where it should be; the scan then reads the reset status of the modules first.
+    /// True while an actuator is not where it should be, perhaps because a module restarted: the scan then first reads
+    /// the reset status of the modules.
     restart_check: bool,
     beam_line: LineId,
     scanning: bool,
     check_tries: u8,
-    /// True once safe writes are queued; they go even before the poll of the emergency-stop contact.
+    /// True once safe writes are queued; they precede even the poll of the emergency-stop contact.
     making_safe: bool,
     ticket: u64,
     now: RigTime,
@@ -181,7 +183,7 @@ impl Traffic {
         self.scanning = true;
     }
 
-    /// Stops the scan, so that only queued commands (writes) and heartbeats go out.
+    /// Stops the scan; from then on only queued commands and heartbeats go out.
     pub fn only_writes(&mut self) {
         self.scanning = false;
     }
@@ -204,8 +206,8 @@ impl Traffic {
         self.beam = command;
     }
 
-    /// Turns the restart check on or off. Once it is on, the scan reads the reset status of every scanned module first,
-    /// so that the answers arrive before the debounce time of a sensor ends.
+    /// Turns the restart check on or off. When it turns on, the scan first reads the reset status of every scanned
+    /// module, so that the answers arrive before the debounce time of a sensor ends.
     pub fn check_restarts(&mut self, restart_check: bool) {
         if restart_check && !self.restart_check {
             for slot in &mut self.slots {
@@ -233,8 +235,8 @@ impl Traffic {
         self.job = Some(OpenJob::default());
     }
 
-    /// Drops the measuring job and all queued commands. Queued writes are dropped too, because safe writes replace
-    /// them; returns the modules of these writes.
+    /// Drops the measuring job and all queued commands; returns the modules whose queued writes it dropped. Safe writes
+    /// replace them.
     pub fn drop_all(&mut self) -> Vec<ModuleId> {
         self.job = None;
         self.making_safe = true;
@@ -247,14 +249,14 @@ impl Traffic {
         written.collect()
     }
 
-    /// Returns the result of a measuring job that needed no transaction.
+    /// Returns the result of the measuring job if it needed no transaction, else `None`.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
         let done = self.job.as_ref()?.if_empty(now)?;
         self.job = None;
         Some(done)
     }
 
-    /// Closes one transaction of the measuring job; after the last one, returns the result of the job.
+    /// Closes one transaction of the measuring job; returns the result of the job after the last one, else `None`.
     pub fn job_part_done(&mut self, at: RigTime, trouble: Option<Message>) -> Option<JobDone> {
         let done = self.job.as_mut()?.part_done(at, trouble)?;
         self.job = None;
@@ -337,7 +339,7 @@ impl Traffic {
         }
     }
 
-    /// Returns the next answer that has arrived.
+    /// Returns the next answer that has arrived; `None` if there is none.
     pub fn next_answer(&mut self) -> Option<(LineId, Purpose, Answer)> {
         for slot in &mut self.slots {
             let Some(answer) = slot
@@ -372,7 +374,7 @@ impl Traffic {
         .await;
     }
 
-    /// Returns the first instant at which a heartbeat or a scan is due on an idle line.
+    /// Returns the first instant after `now` at which a heartbeat or a scan is due on an idle line.
     pub fn next_due(&self, now: RigTime) -> Option<RigTime> {
         self.slots
             .iter()

@@ -1,31 +1,33 @@
-//! Selects one of several answers to the same request, given some milliseconds apart, of which one may be damaged.
+//! Selects one of several answers to the same request, of which one may be damaged. The answers come some milliseconds
+//! apart.
 //!
 //! An eight-bit checksum lets one damaged reply in 256 pass. Damage rarely repeats identically, so two consecutive
-//! answers that are equal are both taken as true. A quantity that moves or is noisy gives different answers; it is read
-//! a third time, and the answer between the other two is selected: one damaged answer of three cannot push the selected
-//! value beyond the two intact ones.
+//! equal answers count as true. A quantity that moves or is noisy gives different answers: the host then reads it a
+//! third time and takes the answer between the other two, because one damaged answer of three cannot move this value
+//! beyond the two intact ones.
 //!
 //! | three answers, no two consecutive ones equal | selected |
 //! |---|---|
 //! | analog reading, level, frequency | the answer with the middle value |
-//! | all analog inputs at once | the second, if each input lies between its first and its third reading, or outside by at most 1/1024 of its range: the noise of the coarsest converter (twelve bits) |
-//! | count | the second, if the counts rise, by at most 100 kHz, which is more than any input of a 7080 accepts |
-//! | event counter | the second, if the counts rise, by at most 100 Hz |
+//! | all analog inputs at once | the second, if each input lies between its first and its third reading, or at most 1/1024 of its range outside: the noise of the coarsest converter (twelve bits) |
+//! | count | the second, if the counts rise at most at 100 kHz, which is more than any input of a 7080 accepts |
+//! | event counter | the second, if the counts rise at most at 100 Hz |
 //! | everything else | none |
 
 use super::{Command, Reading, Reply, TypeCode};
 
-/// How far noise may take an input, read with others at once, outside its first and third reading; fraction of the
-/// range.
+/// Noise, as a fraction of the range, by which an input read together with others may lie outside its first and third
+/// reading.
 const NOISE_SHARE: f64 = 1.0 / 1024.0;
-/// Fastest rise of a count that is accepted, counts per millisecond.
+/// Fastest accepted rise of a count, counts per millisecond.
 const COUNTS_PER_MS: u64 = 100;
 /// Least time between two events counted on a digital input, milliseconds.
 const MS_PER_EVENT: u64 = 10;
 
 impl Command {
     /// Returns the index of the answer to accept among two or three. `apart_ms` is the time from the first to the last
-    /// request, milliseconds, rounded up. Returns `None` when a third answer is needed, or when three do not suffice.
+    /// request, milliseconds, rounded up. `None` for two answers means that a third one is needed; for three, that no
+    /// answer is trustworthy.
     pub fn select_answer(&self, answers: &[Reply], apart_ms: u64) -> Option<usize> {
         let alike = answers.windows(2).position(|pair| pair[0] == pair[1]);
         let [first, second, third] = answers else {
@@ -62,7 +64,7 @@ impl Command {
         }
     }
 
-    /// Returns the number by which answers are compared; `None` for answers without an order.
+    /// Returns the number by which [`Self::select_answer`] compares answers; `None` for answers without an order.
     fn size(&self, answer: &Reply) -> Option<f64> {
         match answer {
             Reply::Reading(reading) => reading.value.in_units(self.range()?),
@@ -72,8 +74,8 @@ impl Command {
         }
     }
 
-    /// Returns true when a reading lies between those before and after it, allowing for noise. A reading without a
-    /// number, for example over range, must be the same in all three.
+    /// Returns true when reading `it` lies between those before and after it, up to noise. Readings without a number,
+    /// such as over range, must be the same in all three answers.
     fn lies_between(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
         let scale = self.range().and_then(TypeCode::full_scale);
         let noise = scale.map_or(0.0, |scale| (scale.high - scale.low) * NOISE_SHARE);
@@ -109,7 +111,7 @@ mod tests {
         UpTo,
     };
 
-    /// Returns the index of the selected answer, when the requests lie 3 ms apart.
+    /// Returns the index of the selected answer; the requests lie 3 ms apart.
     fn select(command: Command, said: &[&str]) -> Option<usize> {
         let answers: Vec<_> = said
             .iter()

@@ -7,8 +7,8 @@ use super::shape::Shape;
 use super::{Address, Channel, DataFormat, TypeCode};
 use std::fmt;
 
-/// Notation, range and channel count of an input module; decoding its readings needs all three. The host should once
-/// compare them with the module's configuration word.
+/// Notation, range and channel count of an input module; decoding its readings needs all three. A host should once
+/// compare notation and range with the module's configuration word.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct InputForm {
     channels: u8,
@@ -81,7 +81,7 @@ pub enum AnalogIn {
     /// `$AA5VV`: enables channels, bit n = channel n. Only its length distinguishes it from `$AA5`, which reads the
     /// reset status.
     WriteMask(u8),
-    /// `$AA3` of thermocouple modules: reads the cold junction, degrees Celsius.
+    /// `$AA3` of thermocouple modules: reads the temperature of the cold junction, degrees Celsius.
     ReadColdJunction,
     /// `$AAB`, newer modules: reads the channels with an open wire or over range, bit n = channel n.
     ReadDiagnosis,

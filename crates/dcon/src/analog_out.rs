@@ -8,8 +8,8 @@ use super::{Address, Channel, Level, OutputForm, SlewCode, TypeCode, UpTo};
 /// Commands of analog output modules. `channel` is `None` for the one-channel 7021 and 7021P.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnalogOut {
-    /// `#AA(data)`, `#AAN(data)`: drives the output to a level at the configured slew rate. The module refuses a level
-    /// out of range, and still drives the output to the nearest limit.
+    /// `#AA(data)`, `#AAN(data)`: drives the output to a level at the configured slew rate. The module answers a level
+    /// out of range with a refusal, but still drives the output to the nearest limit.
     Write {
         /// Number of the output.
         channel: Option<Channel>,

@@ -5,22 +5,23 @@ use super::request::Request;
 /// Two bytes as a digital module sends them; their meaning depends on the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits {
-    /// The outputs if the module has outputs and inputs; channels 8 to 15 if it has more than eight of one kind; else
-    /// all channels, such as the inputs of a 7052.
+    /// On a module with outputs and inputs, the outputs; on one with more than eight channels of one kind, channels 8
+    /// to 15; otherwise all channels, such as the inputs of a 7052.
     pub first: u8,
-    /// The inputs if the module has outputs and inputs; channels 0 to 7 if it has more than eight of one kind; else 0.
+    /// On a module with outputs and inputs, the inputs; on one with more than eight channels of one kind, channels 0 to
+    /// 7; otherwise 0.
     pub second: u8,
 }
 
 impl Bits {
-    /// Returns both bytes as one word, bit n = channel n; for modules with up to 16 inputs or 16 outputs: 7041, 7043,
-    /// 7045, 7051.
+    /// Returns both bytes as one word, bit n = channel n. This suits modules with only inputs or only outputs, more
+    /// than eight of them: 7041, 7043, 7045, 7051.
     pub fn word(self) -> u16 {
         u16::from(self.first) << 8 | u16::from(self.second)
     }
 }
 
-/// Number of hex digits of the data in `@AA(data)`; a module accepts one width only.
+/// Number of hex digits of the data in `@AA(data)`; each model accepts exactly one width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Width {
     /// 7060, 7063: up to four outputs, one digit.

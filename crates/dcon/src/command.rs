@@ -30,7 +30,7 @@ pub enum Command {
 pub enum Effect {
     /// Changes nothing; may be repeated.
     Read,
-    /// Clears what it reads (such as a flag), so a repetition gives another answer.
+    /// Clears what it reads (such as a flag), so that a repetition gives another answer.
     ReadOnce,
     /// Drives outputs. A module whose host watchdog has tripped ignores it.
     Output,
@@ -74,9 +74,9 @@ impl Command {
 
     /// Decodes `frame` as the reply to this command.
     ///
-    /// The CR may be missing, unless only the CR can prove that the reply is complete: a reply of variable length on a
+    /// The CR may be missing, unless it alone proves that the reply is complete: for a reply of variable length on a
     /// line without checksum. Returns a [`ReplyError`] for everything unexpected; two of its variants, `Refused` and
-    /// `Ignored`, are answers that the module gave.
+    /// `Ignored`, are genuine answers of the module.
     pub fn decode(&self, frame: &[u8], checksum: bool) -> Result<Reply, ReplyError> {
         let (Some(address), Some((effect, shape))) = (self.address(), self.table()) else {
             return Err(ReplyError::Broadcast);
@@ -89,19 +89,19 @@ impl Command {
         shape.decode(text, address)
     }
 
-    /// Returns true when the command may be repeated after a lost reply, without harm and with the same result.
+    /// Returns true when the host may repeat the command after a lost reply, without harm and with the same result.
     pub fn repeatable(&self) -> bool {
         self.effect() == Effect::Read
     }
 
-    /// Returns true when the module writes, or may write, its EEPROM. Such a command must not be sent cyclically or
+    /// Returns true when the module writes, or may write, its EEPROM. A host must not send such a command cyclically or
     /// during a lot.
     pub fn writes_eeprom(&self) -> bool {
         self.effect() == Effect::Store
     }
 
-    /// Returns the length of the longest reply from its first character to its CR; a checksum adds two. Zero for
-    /// broadcasts.
+    /// Returns the greatest length of a reply from its first character to its CR, without a checksum, which adds two
+    /// characters. Zero for broadcasts.
     pub fn longest_reply(&self) -> usize {
         /// Length of `?AA` and CR: any command may be refused.
         const REFUSAL: usize = 4;
@@ -126,7 +126,7 @@ impl Command {
         }
     }
 
-    /// Returns true when the module may be busy with a conversion, so that its reply needs the longer time-out.
+    /// Returns true when a conversion may keep the module busy, so that its reply needs the longer time-out.
     pub fn is_analog_input(&self) -> bool {
         matches!(self, Self::AnalogIn(..))
     }

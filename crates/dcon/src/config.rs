@@ -1,6 +1,6 @@
 //! The configuration word `TT CC FF`, which every module keeps in its EEPROM, and the name of a module.
 //!
-//! A host should compare the reply to `$AA2` with the wanted configuration and write only a difference, because
+//! A host should compare the reply to `$AA2` with the wanted configuration and write only when they differ, because
 //! each write wears the EEPROM.
 
 use super::{TypeCode, Unit, UpTo};
@@ -97,7 +97,7 @@ impl FormatByte {
         SlewCode(UpTo::new(self.0 >> 2 & 0x0F).unwrap_or(SlewCode::IMMEDIATE.0))
     }
 
-    /// Returns true when the frequency gate of a counter lasts 1.0 s instead of 0.1 s (bit 2).
+    /// Returns true when the gate time of a frequency measurement is 1.0 s instead of 0.1 s (bit 2).
     pub fn long_gate(self) -> bool {
         self.0 & 0x04 != 0
     }
@@ -108,7 +108,7 @@ impl FormatByte {
 pub struct SlewCode(pub UpTo<15>);
 
 impl SlewCode {
-    /// Code for no slew rate: the output steps at once.
+    /// Code for no slew limit: the output steps at once.
     pub const IMMEDIATE: Self = match UpTo::new(0) {
         Some(zero) => Self(zero),
         None => unreachable!(),

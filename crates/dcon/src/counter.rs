@@ -30,7 +30,7 @@ pub enum InputMode {
     Isolated0,
 }
 
-/// Signal level whose least pulse width or TTL threshold a command reads or sets.
+/// Signal level, high or low, to which a pulse width or a TTL threshold applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
     /// `H`: the high level.
@@ -48,7 +48,7 @@ impl Edge {
     }
 }
 
-/// How an alarm on both limits behaves (alarm mode 1).
+/// Behaviour of the alarm in mode 1, which has two limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AlarmKind {
     /// `L`: the alarm stays until it is cleared.
@@ -84,8 +84,8 @@ pub struct AlarmState {
     pub outputs: u8,
 }
 
-/// Commands of the 7080. A reply with a count carries no address, so only first character, length and hex digits can be
-/// checked.
+/// Commands of the 7080. A reply with a count carries no address: only its first character, length and hex digits can
+/// be checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counter {
     /// `#AAN` of a module with type code 50: reads the count.
@@ -146,7 +146,7 @@ pub enum Counter {
     EnableAlarmOf(UpTo<1>),
     /// `@AADAN`, mode 0: disables the alarm of one counter.
     DisableAlarmOf(UpTo<1>),
-    /// `@AARP`, `@AARA`: reads an alarm limit. 0 and 1 are the limits of counter 0 and 1; in mode 1 the high and the
+    /// `@AARP`, `@AARA`: reads alarm limit 0 or 1: in mode 0 the limit of counter 0 or 1, in mode 1 the high or the
     /// high-high limit of counter 0.
     ReadLimit(UpTo<1>),
     /// `@AAPA(data)`, `@AASA(data)`: sets an alarm limit, numbered as in [`Counter::ReadLimit`].

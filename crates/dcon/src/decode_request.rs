@@ -1,8 +1,8 @@
-//! Parses a request back into commands; the request is as on the wire, from first to last character.
+//! Parses a request, as it is on the wire from first to last character, back into commands.
 //!
 //! The same characters mean different things to different modules (`$016` reads a channel mask, a level or sixteen
-//! bits), so one request may fit several commands; a list per family gives the candidates. A request does not tell the
-//! range, so numbers stay in their notation.
+//! bits), so that one request may fit several commands; a list per family gives the candidates. A request does not
+//! state a range, so numbers stay in their notation.
 
 use super::frame::{hex_digit, hex_number};
 use super::{
@@ -11,7 +11,7 @@ use super::{
     InputMode, Level, ModuleName, OutputForm, OutputWord, SlewCode, Stored, TypeCode, UpTo, Width,
 };
 
-/// A type code that no module has; with it, a reading is checked against no range.
+/// A type code that no module has; readings decoded with it are not checked against a range.
 const UNKNOWN: TypeCode = TypeCode(0xFF);
 
 /// Numbers of inputs that analog modules have; the decoder tries each, because a request does not name its model.
@@ -50,7 +50,7 @@ pub fn decode_request(request: &[u8]) -> Vec<Command> {
     found.extend(analog_out(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(digital(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(counter(rest).into_iter().map(|ask| ask.to(to)));
-    // Each candidate is encoded again: this checks the first character and whatever the lists accept too freely.
+    // Encoding each candidate again checks the first character and everything that the lists accept too freely.
     let mut encoded = Vec::with_capacity(24);
     found.retain(|command| {
         encoded.clear();

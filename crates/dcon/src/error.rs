@@ -17,7 +17,7 @@ pub enum ReplyError {
     Broadcast,
     /// The frame has no characters before its end.
     Empty,
-    /// The frame does not end in CR, and only the CR could prove it complete.
+    /// The frame does not end in CR, and nothing else proves it complete.
     NotEnded,
     /// The frame is longer than any reply of the protocol.
     TooLong {
@@ -113,7 +113,8 @@ impl ReplyError {
         }
     }
 
-    /// Returns true when the module understood and refused: the line works, and a repetition changes nothing.
+    /// Returns true when the module understood the command and refused it: the line works, and a repetition changes
+    /// nothing.
     pub fn is_answer(self) -> bool {
         matches!(self, Self::Refused | Self::Ignored)
     }

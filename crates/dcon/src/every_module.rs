@@ -18,8 +18,8 @@ pub enum Common {
         /// New type, baud and format.
         config: Config,
     },
-    /// `$AA5`: reads the reset status, which is true at the first read after a reset, then false. Counters lack this
-    /// command.
+    /// `$AA5`: reads the reset status, which is true at the first read after a reset, then false. Counter modules lack
+    /// this command.
     ReadResetStatus,
     /// `$AAF`: reads the firmware version.
     ReadFirmware,
@@ -31,8 +31,8 @@ pub enum Common {
     ReadInitPin,
     /// `~AA0`: reads the status of the host watchdog. Bit 2: it has tripped. Bit 7, in newer firmware: it is enabled.
     ReadWatchdogStatus,
-    /// `~AA1`: clears the status of a tripped watchdog, so that outputs can be written again. The module keeps it in
-    /// EEPROM.
+    /// `~AA1`: clears the status of a tripped watchdog, so that the host can write outputs again. The module keeps this
+    /// status in EEPROM.
     ClearWatchdogStatus,
     /// `~AA2`: reads the settings of the host watchdog.
     ReadWatchdog,
@@ -58,10 +58,10 @@ pub enum Common {
         /// True for Modbus RTU, false for DCON.
         modbus: bool,
     },
-    /// `~AAI`: opens soft INIT: for the seconds that [`Common::OpenSoftInit`] set, `%AANNTTCCFF` may change baud rate
-    /// and checksum without a wire on INIT*.
+    /// `~AAI`: begins soft INIT: for the seconds that [`Common::OpenSoftInit`] has set, `%AANNTTCCFF` may change baud
+    /// rate and checksum without a wire on INIT*.
     EnterSoftInit,
-    /// `~AATnn`: sets how long soft INIT lasts after `~AAI`.
+    /// `~AATnn`: sets for how long soft INIT lasts after [`Common::EnterSoftInit`].
     OpenSoftInit {
         /// Duration, seconds; 0, the value at power-on, does not permit soft INIT.
         seconds: UpTo<60>,

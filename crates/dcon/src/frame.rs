@@ -2,7 +2,7 @@
 
 use super::ReplyError;
 
-/// Longest frame that is accepted, CR included, characters. The longest reply of the protocol has 60.
+/// Greatest accepted length of a frame, characters, CR included. The longest reply of the protocol has 60.
 pub const FRAME_LIMIT: usize = 64;
 
 /// Carriage return: the only character that ends a frame.
@@ -13,7 +13,7 @@ pub fn checksum(text: &[u8]) -> u8 {
     text.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }
 
-/// Removes checksum and CR. Returns the characters before them, and true when the frame is proved complete.
+/// Removes checksum and CR. Returns the characters before them, and whether CR or checksum proves the frame complete.
 pub(super) fn open(frame: &[u8], with_checksum: bool) -> Result<(&[u8], bool), ReplyError> {
     if frame.len() > FRAME_LIMIT {
         return Err(ReplyError::TooLong {

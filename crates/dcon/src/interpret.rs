@@ -1,5 +1,5 @@
-//! Interprets the traffic of a line, for traces and for commands typed by hand: which commands a family of modules has,
-//! which requests must never be sent, and what a request and its reply mean together.
+//! Interprets the traffic of a line, for traces and for commands typed by hand: the commands that a family of modules
+//! has, the requests that must never be sent, and the joint meaning of a request and its reply.
 //!
 //! A request may fit several commands ([`decode_request()`]). Its reply shows which of them the host meant: [`interpret`]
 //! returns those that the reply fits.
@@ -20,7 +20,7 @@ pub enum Family {
     Counter,
 }
 
-/// Properties of a module that decide its commands and what its replies mean.
+/// Properties of a module that determine its commands and the meaning of its replies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Model {
     /// Family of its commands.
@@ -85,7 +85,8 @@ impl Model {
     }
 
     /// Splits the two bytes of a digital module into the states of its inputs and of its outputs, bit n = channel n. On
-    /// a module with both, the first byte holds the outputs; else up to eight channels use the first byte, more both.
+    /// a module with both, the first byte holds the outputs. On any other module, up to eight channels use the first
+    /// byte, and more channels use both.
     pub fn split(self, bits: Bits) -> (u16, u16) {
         let alone = |channels: u8| match channels {
             0 => 0,
@@ -100,8 +101,8 @@ impl Model {
     }
 }
 
-/// Returns why a request must never be sent; `None` when it may be. Factory calibration and trim need instruments that
-/// a rig does not have, and can spoil a module for good.
+/// Returns why a request must never be sent; `None` when it is permitted. Factory calibration and trim need instruments
+/// that a rig does not have, and can spoil a module for good.
 pub fn factory_command(request: &[u8]) -> Option<&'static str> {
     let [lead, _, _, rest @ ..] = request else {
         return None;

@@ -6,7 +6,7 @@ use super::{ReplyError, TypeCode};
 use std::fmt;
 use thiserror::Error;
 
-/// Notation of the output levels of a module; model and configuration word decide it.
+/// Notation of the output levels of a module; it follows from model and configuration word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputForm {
     /// 7021, 7021P, 7022: `05.000`, steps of 0.001 V or 0.001 mA, without sign.
@@ -21,7 +21,7 @@ pub enum OutputForm {
     Hex16,
 }
 
-/// Reason why no level expresses a value.
+/// Reason why no level represents a value.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LevelError {
     /// The range has no scale, or the value is NaN.
@@ -32,7 +32,7 @@ pub enum LevelError {
         /// Type code of the range.
         range: u8,
     },
-    /// The value is out of range; the module would stop at the limit.
+    /// The value is out of range; the module would drive the output to the nearest limit.
     #[error("level {value} is outside {low} to {high}")]
     OutOfRange {
         /// Value requested, in the unit of the range.
@@ -44,7 +44,7 @@ pub enum LevelError {
     },
 }
 
-/// A level in whole steps of its notation.
+/// A level as a whole number of steps of its notation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Level {
     form: OutputForm,
@@ -161,7 +161,7 @@ impl Level {
 
 impl fmt::Display for Level {
     /// Writes `5.000`, `50.00 %`, or hex digits with their share of the span: `7FFF (50.00 %)`. It writes no unit,
-    /// which depends on the range of the output.
+    /// because the unit depends on the range of the output.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let steps = f64::from(self.steps);
         let share = 100.0 * steps / f64::from(self.form.limits().1);
@@ -176,7 +176,7 @@ impl fmt::Display for Level {
     }
 }
 
-/// Returns `value` as a fraction of full scale: of the span for one-sided ranges, of the upper end for two-sided ones.
+/// Returns `value` as a fraction: of the span for one-sided ranges, of the upper end for two-sided ones.
 fn share(value: f64, low: f64, high: f64) -> f64 {
     if low < 0.0 {
         value / high

@@ -1,11 +1,11 @@
-//! The DCON protocol of I-7000 modules, for the one master of a line: bytes in, values out, no input or output of its
-//! own.
+//! The DCON protocol of I-7000 modules, for the one master of a line: converts commands to bytes and bytes to values,
+//! and does no input or output of its own.
 //!
 //! A request is `LEAD address command [checksum] CR`, a reply is `LEAD [address] data [checksum] CR`, all in upper-case
-//! ASCII; the lead is the first character and tells the kind of message. The meaning of a reply depends on its command:
+//! ASCII; the lead is the first character and gives the kind of message. The meaning of a reply depends on its command:
 //! `>` replies carry no address, and the reply to `$AA6` is a channel mask, a level or sixteen bits, depending on the
-//! module. So the *command* decodes the reply ([`Command::decode`]) by lead, exact length, form and range. Anything
-//! that does not fit is a [`ReplyError`] with its reason, never a value.
+//! module. So the *command* decodes the reply ([`Command::decode`]) and checks lead, exact length, form and range.
+//! Anything that does not fit is a [`ReplyError`] with its reason, never a value.
 //!
 //! ```
 //! use dcon::{Address, Command, Common, Reply, ReplyError};
@@ -41,8 +41,8 @@
 //! | `describe.rs` | descriptions of requests, replies and errors: codes with arguments, without texts |
 //!
 //! # Absent by design
-//! Factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) have no representation in these types,
-//! so no mistake in the caller can decalibrate a module.
+//! Factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) have no representation in these types, so
+//! that no mistake of a caller can decalibrate a module.
 
 mod agreement;
 mod analog_in;

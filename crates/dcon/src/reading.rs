@@ -28,7 +28,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Converts the value to the unit of `range`; `None` for a state that is not a number, and for a range without
+    /// Converts the value to the unit of `range`; `None` for a state that is not a number, and for a range without a
     /// scale.
     pub fn in_units(self, range: TypeCode) -> Option<f64> {
         let scale = range.full_scale()?;
@@ -146,7 +146,7 @@ fn engineering(field: &[u8], range: TypeCode, at: usize) -> Result<Value, ReplyE
             });
         }
     };
-    // Inputs saturate slightly above full scale, by less than the quarter of the span that is allowed here.
+    // Inputs saturate slightly above full scale, by less than the permitted quarter of the span.
     let plausible = range.full_scale().is_none_or(|scale| {
         let slack = (scale.high - scale.low) / 4.0;
         (scale.low - slack..=scale.high + slack).contains(&number)
@@ -186,7 +186,7 @@ enum Decimal {
     },
 }
 
-/// Parses a sign, and five digits with a decimal point among them. Only an over-range reading may lack the sign.
+/// Parses five digits with a decimal point among them, after a sign. Only an over-range reading may lack the sign.
 fn decimal(field: &[u8]) -> Option<Decimal> {
     let (negative, digits) = match field {
         [b'+', rest @ ..] => (false, rest),

@@ -9,7 +9,7 @@ use std::fmt;
 /// Meaning of a valid reply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reply {
-    /// A broadcast was sent; no module confirms that it arrived.
+    /// The line has sent a broadcast; no module confirms that it arrived.
     Sent,
     /// `!AA` or `>`: the module did as commanded.
     Accepted,
@@ -30,7 +30,7 @@ pub enum Reply {
     Decimal(u32),
     /// `!AAEVV`: host watchdog settings.
     Watchdog {
-        /// True when the watchdog is on; `None` when the firmware does not tell.
+        /// True when the watchdog is on; `None` when the firmware does not report it.
         enabled: Option<bool>,
         /// Time without a message from the host after which the watchdog trips, tenths of a second.
         timeout_tenths: u8,
@@ -80,7 +80,7 @@ pub enum Reply {
     },
 }
 
-/// A short text from a module, kept without allocation.
+/// A short text from a module, stored without allocation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Text {
     bytes: [u8; Text::LONGEST],
@@ -88,7 +88,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// Most characters, with a reserve: names have up to six, versions fewer.
+    /// Greatest number of characters, with a reserve: names have up to six, versions fewer.
     pub const LONGEST: usize = 16;
 
     /// Creates a text; returns `None` when it is empty or too long.

@@ -1,13 +1,14 @@
-//! Tells whether a module already has the setting that a command would write. An EEPROM endures a limited number of
-//! writes, so the host first reads the setting ([`Command::setting`]) and writes it only if it differs
+//! Determines whether a module already has the setting that a command would write. An EEPROM endures a limited number
+//! of writes, so the host first reads the setting ([`Command::setting`]) and writes it only if it differs
 //! ([`Command::is_in_effect`]).
 //!
-//! Two kinds of settings are always written:
+//! Two kinds of settings cannot be compared, so the host always writes them:
 //!
-//! - Stored outputs. A comparison needs the stored and the present pattern, and which half of the present one belongs
-//!   to outputs depends on the model, which the request does not name.
-//! - Alarms of a 7080, when they are switched on, and their mode. What the reply to `@AADI` means depends on the mode,
-//!   and no manual has the command that reads the mode. Only the digit for all alarms off is the same in both modes.
+//! - Stored outputs. A comparison needs the stored and the present pattern; which half of the present one belongs to
+//!   outputs depends on the model, which the request does not name.
+//! - The alarm mode of a 7080, and its alarms when a command switches them on. The meaning of the reply to `@AADI`
+//!   depends on the mode, and no manual has the command that reads the mode. Only the digit for all alarms off is the
+//!   same in both modes.
 
 use super::{
     AlarmMode, Alarms, AnalogIn, AnalogOut, Command, Common, Config, Counter, FormatByte, Reply,
@@ -20,8 +21,8 @@ const TRIPPED: u8 = 0x04;
 const MODEL_BITS: u8 = 0x07;
 
 impl Command {
-    /// Returns the command that reads the setting which this command writes; `None` when it writes none, or when no
-    /// reply shows the setting.
+    /// Returns the command that reads the setting which this command writes; `None` when this command writes none, or
+    /// when no reply shows the setting.
     pub fn setting(&self) -> Option<Self> {
         match *self {
             Self::HostOk | Self::SampleAll | Self::Digital(..) => None,
@@ -159,7 +160,8 @@ fn counter(ask: Counter) -> Option<Counter> {
         Counter::WriteThreshold(side, _) => Some(Counter::ReadThreshold(side)),
         Counter::WriteLimit(n, _) => Some(Counter::ReadLimit(n)),
         Counter::WriteDisplay(_) => Some(Counter::ReadDisplay),
-        // Reads as in mode 0, which accepts every digit that a module sends in either mode; 0 means off in both.
+        // Reads as in mode 0, whose decoding accepts every digit that a module sends in either mode; 0 means off in
+        // both.
         Counter::DisableAlarm | Counter::DisableAlarmOf(_) => {
             Some(Counter::ReadAlarm(AlarmMode::PerCounter))
         }

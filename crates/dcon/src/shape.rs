@@ -150,8 +150,8 @@ impl Shape {
         }
     }
 
-    /// Returns true for a form with an open end: a shorter reply may be complete too, so only a CR or a checksum proves
-    /// it.
+    /// Returns true for a form of variable length: a shorter reply may be complete too, so that only a CR or a checksum
+    /// proves the end.
     pub(super) fn is_open(self) -> bool {
         self.shortest() < self.longest()
     }
@@ -241,7 +241,7 @@ fn two_bytes(fields: &mut Fields<'_>) -> Result<Bits, ReplyError> {
     })
 }
 
-/// Decodes a stored pattern. Modules with eight outputs send it in the first byte and append 00.
+/// Decodes a stored pattern. Modules with eight outputs send the pattern in the first byte and append 00.
 fn stored_bits(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     two_bytes(fields).map(Reply::Bits)
 }

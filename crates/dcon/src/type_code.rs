@@ -1,4 +1,4 @@
-//! Type codes (TT): each stands for the range that a module measures or drives, and for its scale.
+//! Type codes (TT): each stands for a measuring or output range and its scale.
 
 use std::fmt;
 

@@ -16,7 +16,8 @@ use texts::Args;
 pub enum AlarmChange {
     /// The cause is gone.
     Returned {
-        /// Name and value of the argument that tells the alarm from others with its code; `None` for all with the code.
+        /// Name and value of the argument that distinguishes this alarm from others with the same code; `None` for all
+        /// alarms with the code.
         only: Option<(&'static str, String)>,
     },
     /// A person has acknowledged the alarm.
@@ -64,7 +65,7 @@ pub struct UnacknowledgedAlarm {
 }
 
 impl UnacknowledgedAlarm {
-    /// Returns the alarm; `None` when this version lacks its code.
+    /// Returns the alarm; `None` when this version of the program does not know its code.
     pub fn alarm(&self) -> Option<Alarm> {
         Some(Alarm {
             code: AlarmCode::from_name(&self.code)?,
@@ -143,7 +144,8 @@ fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<Unackn
         .try_fold(Vec::new(), |left, row| row.map(|row| with(left, row)))
 }
 
-/// Adds the occurrence `last` to `left`; it replaces an earlier occurrence of the same alarm and takes over its count.
+/// Adds the occurrence `last` to `left`. If `left` has an earlier occurrence of the same alarm, removes it and adds its
+/// count to that of `last`.
 fn with(
     mut left: Vec<UnacknowledgedAlarm>,
     mut last: UnacknowledgedAlarm,
@@ -162,8 +164,9 @@ fn with(
 }
 
 impl Store {
-    /// Returns the unacknowledged alarms of the real or the simulated rig in order of their last occurrence. Alarms
-    /// with the same code count together unless an argument, such as the name of a module, tells them apart.
+    /// Returns the unacknowledged alarms of the real or the simulated rig in order of their last occurrence.
+    /// Occurrences with the same code count as one alarm unless an argument, such as the name of a module,
+    /// distinguishes them.
     pub fn unacknowledged_alarms(&self, simulated: bool) -> Result<Vec<UnacknowledgedAlarm>> {
         left(self.connection(), simulated).doing("reading unacknowledged alarms")
     }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use texts::{Args, Lang};
 use utoipa::ToSchema;
 
-/// State of an alarm (ISA-18.2, states B to E). Whether it is shelved is kept apart.
+/// State of an alarm (ISA-18.2, states B to E). [`Shelf`] tells whether the alarm is shelved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AlarmState {
@@ -55,7 +55,7 @@ pub struct Alarm {
     pub cause_zh: Option<&'static str>,
     /// Time at which the alarm was raised.
     pub raised: Moment,
-    /// Time at which the cause was gone; `None` while the alarm is active, and for one that ended its run.
+    /// Time at which the cause was gone; `None` while the alarm is active, and for an alarm that ended its run.
     pub cleared: Option<Moment>,
     /// Time of the acknowledgement, if any.
     pub acknowledged: Option<Moment>,
@@ -63,7 +63,7 @@ pub struct Alarm {
     pub acknowledged_by: Option<String>,
     /// The last shelving of the alarm, if any.
     pub shelf: Option<Shelf>,
-    /// State of the alarm, as the times above give it.
+    /// State of the alarm, derived from `cleared` and `acknowledged`.
     pub state: AlarmState,
 }
 
@@ -78,7 +78,7 @@ impl AlarmState {
     }
 }
 
-/// Converts stored arguments; returns none when they are missing or damaged.
+/// Reads the stored arguments of a message; returns no arguments when they are missing or damaged.
 pub(super) fn args(stored: Option<Value>) -> Args {
     let args = stored.and_then(|it| serde_json::from_value(it).ok());
     args.unwrap_or_default()
@@ -90,13 +90,13 @@ pub(super) fn said(code: &str, args: Args) -> Option<String> {
     code.message(args).try_say(Lang::Zh)
 }
 
-/// Returns an alarm as the JSON object that a row about something else keeps.
+/// Returns the JSON object (code and arguments) by which a row of another table, such as a lot state, names an alarm.
 pub(super) fn stored(alarm: &trouble::Alarm) -> Value {
     json!({ "code": alarm.code.name(), "args": alarm.args })
 }
 
-/// Returns the Chinese text of an alarm that a row keeps as [`stored`]; `None` without an alarm, and when this version
-/// lacks its code or an argument.
+/// Returns the Chinese text of an alarm that [`stored`] has converted; `None` without an alarm, when this version of
+/// the program does not know its code, and when an argument is missing.
 pub(super) fn chinese(stored: Option<Value>) -> Option<String> {
     let mut stored = stored?;
     let given = args(stored.get_mut("args").map(Value::take));
@@ -104,7 +104,8 @@ pub(super) fn chinese(stored: Option<Value>) -> Option<String> {
 }
 
 impl Archive {
-    /// Returns one page of the alarms in order of time; lot, run, recipe and time span of the filter select them.
+    /// Returns the alarms that lot, run, recipe and time span of the filter select, in order of time; limit and offset
+    /// of the filter apply.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
         let alarms = filter.alarms().rows(&self.connection, |row| {
             let moment = |column: usize| {

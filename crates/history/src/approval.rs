@@ -1,4 +1,4 @@
-//! Engineers who answer for the text of a recipe, as the audit of orders names them.
+//! Engineers who saved or approved the text of a recipe, read from the audit of orders.
 
 use super::error::{Doing, Result};
 use super::{Archive, Moment};
@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::path::Path;
 use utoipa::ToSchema;
 
-/// Number of engineers who must have saved or approved a text, in a plant that wants a second person.
+/// Number of engineers who must have saved or approved a text, in a plant that requires a second person.
 pub const SIGNATURES: usize = 2;
 
 /// Signature of an engineer under the text of a recipe.
@@ -19,7 +19,8 @@ pub struct Signature {
 }
 
 /// Returns the engineers who saved or approved the text with this `hash` as `recipe`, each once, in order of time; none
-/// without a history. A revision by the command line is no signature, because it proves no name.
+/// when the file `db` does not exist. A revision made on the command line does not count, because the command line
+/// checks nobody's identity.
 ///
 /// # Errors
 /// Fails when the history in `db` cannot be read.

@@ -111,8 +111,8 @@ impl Archive {
         self.whole(&select)
     }
 
-    /// Returns every test of the production parts with this serial number, the latest last, with all attempts, raw replies
-    /// and curves.
+    /// Returns every test of the production parts with this serial number, the latest last, with all attempts, raw
+    /// replies and curves.
     pub fn of_serial(&self, serial: &str) -> Result<Vec<Part>> {
         let filter = Filter {
             serial: Some(serial.to_owned()),

@@ -72,7 +72,7 @@ impl Archive {
         }
     }
 
-    /// Checks every page, but no index against its table: less than [`Self::check`], and faster.
+    /// Checks every page of the file, but does not compare indexes with their tables; faster than [`Self::check`].
     pub(super) fn quick_check(&self) -> Result<()> {
         self.check_by("PRAGMA quick_check(1)")
     }

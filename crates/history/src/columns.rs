@@ -29,7 +29,7 @@ pub struct Column {
     /// Name in the header.
     pub name: &'static str,
     of: fn(&Part) -> Cell<'_>,
-    /// Function that puts the codes of the cell into words; `None` for a cell without codes.
+    /// Function that converts the codes of the cell into words; `None` for a cell without codes.
     told: Option<fn(&Part, Lang) -> String>,
 }
 
@@ -70,7 +70,7 @@ pub fn header(parameters: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// Returns the names of all columns in a language.
+/// Returns the names of all columns in the language `lang`.
 pub fn header_in(lang: Lang, parameters: &[String]) -> Vec<String> {
     let fixed = COLUMNS.iter();
     let fixed = fixed.map(|column| lang.name("column", column.name).to_owned());
@@ -79,7 +79,7 @@ pub fn header_in(lang: Lang, parameters: &[String]) -> Vec<String> {
     fixed.chain(named()).chain(doubts).collect()
 }
 
-/// Returns the cells of [`COLUMNS`] with words of a language in place of codes.
+/// Returns the cells of [`COLUMNS`], with codes converted into words of the language `lang`.
 pub fn texts_in(part: &Part, lang: Lang) -> impl Iterator<Item = Cell<'_>> {
     COLUMNS.iter().map(move |column| match column.told {
         Some(told) => Cell::Text(Cow::Owned(told(part, lang))),

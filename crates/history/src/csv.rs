@@ -107,7 +107,7 @@ fn is_strict(raw: &str, row: &StringRecord) -> bool {
     rest.is_empty()
 }
 
-/// Characters that make a spreadsheet take a text for a formula when it begins with one of them.
+/// Characters by which, at the beginning of a text, a spreadsheet recognises a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
 /// Returns true when a spreadsheet may take the text for a formula; apostrophes at its beginning are ignored.

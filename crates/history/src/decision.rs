@@ -1,4 +1,4 @@
-//! Decisions of a person about a lot of which no run is under way.
+//! Decisions that a person takes about a lot while no run of it is under way.
 
 use super::LotState;
 use texts::Message;

@@ -65,7 +65,8 @@ pub enum HistoryError {
         /// Error of SQLite.
         source: rusqlite::Error,
     },
-    /// A read-only file has a file of SQLite beside it, whose rows SQLite reads with write access only.
+    /// The file is read-only, and SQLite cannot read the rows in the file beside it (write-ahead log or journal)
+    /// without write access.
     #[error(
         "{path} is read-only, and {beside} may hold its last rows: copy {path} and all files that begin with its name \
          into a folder that can be written"
@@ -76,7 +77,7 @@ pub enum HistoryError {
         /// File that SQLite keeps beside it.
         beside: PathBuf,
     },
-    /// A read-only file has an older schema, which this program would have to migrate.
+    /// The file is read-only and has an older schema, which this program would have to migrate.
     #[error(
         "{path} is read-only and has schema {found}; this program reads {known}: copy it into a folder that can be written"
     )]
@@ -102,7 +103,7 @@ pub enum HistoryError {
         /// Name of the lot.
         lot: String,
     },
-    /// A landing names a part that is not in the history.
+    /// A [`LandingRecord`](super::LandingRecord) names a part that is not in the history.
     #[error("lot {lot:?} has no {kind} part {seq} that could land")]
     NoSuchPart {
         /// Name of the lot.
@@ -178,7 +179,7 @@ impl HistoryError {
         }
     }
 
-    /// Returns the code of the refusal that a page shows, in the family `refusal`.
+    /// Returns the code of the message, in family `refusal`, that a page shows for this error.
     pub fn refusal(&self) -> &'static str {
         match self {
             Self::Missing { .. } => "history_missing",
@@ -195,7 +196,7 @@ pub type Result<T> = std::result::Result<T, HistoryError>;
 
 /// Adds to a database error what the program was doing.
 pub(super) trait Doing<T> {
-    /// Turns a database error into the variant that tells an operator what to do.
+    /// Converts a database error into the [`HistoryError`] that tells an operator what to do.
     fn doing(self, doing: &'static str) -> Result<T>;
 }
 

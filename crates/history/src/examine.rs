@@ -1,4 +1,5 @@
-//! Examines a history without changing it. A reader would migrate an older schema, and a writer would create the file.
+//! Examines a history without changing it: opening a reader would migrate an older schema, and opening a writer would
+//! create a missing file.
 
 use super::error::{Doing, Result};
 use super::{Archive, CalibrationRecord, SCHEMA, open};
@@ -19,7 +20,7 @@ pub struct Examination {
 /// Checks the pages of the file and reads its facts, while other processes may write.
 ///
 /// # Errors
-/// Fails when the file is missing, locked, damaged, of another program or of a newer one.
+/// Fails when the file is missing, locked or damaged, belongs to another program, or has a schema of a later version.
 pub fn examine(path: &Path) -> Result<Examination> {
     let (connection, schema) = open::unchanged(path)?;
     let archive = Archive {

@@ -1,9 +1,9 @@
 //! The filter that command line, page and exports share, and its SQL.
 //!
-//! Without a parameter, the indexes of the table `part` find the parts. With one, the index `measurement_value`
-//! (parameter, population, run, verdict, value) gives their row numbers: SQLite enters this index once per run and
-//! verdict, at the least value, and then visits the matching parts in ascending order, so a page of results ends the
-//! search early. `filter/related.rs` selects runs, alarms and orders.
+//! Without the member `param`, the indexes of the table `part` find the parts. With `param`, the index
+//! `measurement_value` (parameter, population, run, verdict, value) gives their row numbers: SQLite enters this index
+//! once per run and verdict, at the least value, and then visits the matching parts in ascending order, so a page of
+//! results ends the search early. `filter/related.rs` selects runs, alarms and orders.
 
 mod related;
 
@@ -33,13 +33,14 @@ pub struct Filter {
     pub serial: Option<String>,
     /// `lot` for production parts (also when absent), `golden` for reference parts, or `all`.
     pub kind: Option<String>,
-    /// Key of a parameter; selects parts with a value of it that counts (judged, and not measured again).
+    /// Key of a parameter; selects parts with a usable value of it: a number from the last attempt, unless this attempt
+    /// is void.
     pub param: Option<String>,
     /// Least value of `param`, included.
     pub min: Option<f64>,
     /// Greatest value of `param`, included.
     pub max: Option<f64>,
-    /// True selects only suspect parts: judged after a passed reference check and before a failed one.
+    /// True selects only suspect parts: judged before a failed reference check and after the check before it.
     pub suspect: bool,
     /// Largest number of parts to return, the first in order of judgement.
     pub limit: Option<u64>,
@@ -160,7 +161,7 @@ impl Filter {
     }
 
     /// Selects the row number of each part and its value of a parameter, in no particular order. Reads only the index
-    /// `measurement_value`, unless the filter has a bin, a time or `suspect`.
+    /// `measurement_value`, unless the filter has a bin, a serial number, a time span or `suspect`.
     pub(super) fn series(&self, param: &str) -> Select {
         let joined = self.restricts_part();
         let mut select = self.values(param, "m.part_id, m.value", joined);
@@ -170,7 +171,8 @@ impl Filter {
         select
     }
 
-    /// Counts the selected parts; reads only the index `measurement_value` when it holds every member of the filter.
+    /// Counts the selected parts. With `param`, reads only the index `measurement_value` when this index has a column
+    /// for every member of the filter.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
             Some(param) if !self.restricts_part() => {
@@ -283,7 +285,8 @@ impl Filter {
         }
     }
 
-    /// Adds the conditions on `part`; with `by_value`, without kind and verdict, which [`Self::values`] sets.
+    /// Adds the conditions on the table `part`; with `by_value`, leaves out kind and verdict, which [`Self::values`]
+    /// adds.
     fn part_conditions(&self, select: &mut Select, by_value: bool) {
         if !by_value {
             match self.kind.as_deref() {

@@ -3,16 +3,18 @@
 //! | state | may a run begin? | what leads to this state |
 //! |---|---|---|
 //! | open | yes, with its recipe | a run that was stopped, cut off or ended by an alarm; a release |
-//! | running | yes: the run before was cut off | the begin of a run; the next program on the rig makes it open |
+//! | running | yes: the previous run was cut off | the start of a run; the next program on the rig makes it open |
 //! | held | no | a failed reference check, the reject-rate limit, a person |
 //! | complete | a retest only, with the same recipe | the count was reached, or a person closed it |
 //!
-//! A lot keeps its recipe for life. A complete lot stays complete, whatever ends a retest or a hold, until a person
+//! A run is *cut off* when the program ends without closing it, for example at a power failure.
+//!
+//! A lot keeps its recipe for life. A complete lot stays complete, even after a retest or a hold, until a person
 //! reopens it ([`ReopeningRecord`](super::ReopeningRecord)).
 //!
-//! A part judged after the last passed check and before a failed one is *suspect*. Its row stays unchanged;
-//! [`Filter::suspect`](super::Filter) selects it. On a real rig the checks of all runs count; on the simulated rig only
-//! those of the same run.
+//! A part is *suspect* when it was judged before a failed reference check and after the check before that one. Its row
+//! stays unchanged; [`Filter::suspect`](super::Filter) selects it. On a real rig the checks of all runs count; on the
+//! simulated rig only those of the same run.
 
 use super::error::{Doing, Result};
 use super::store::{RowIds, source};
@@ -29,7 +31,7 @@ use utoipa::ToSchema;
 pub enum LotState {
     /// A run of the lot may begin.
     Open,
-    /// A run is under way, or was cut off and no program has used the rig since.
+    /// A run is under way, or was cut off and no program has opened the rig since.
     Running,
     /// No run of the lot may begin until the lot is released.
     Held,
@@ -127,8 +129,8 @@ pub struct LotStatus {
     pub recipe_hash: String,
 }
 
-/// Yield of a lot over its runs: list of lots, report and command line show these counts. A part with a confirmation
-/// measurement has one test.
+/// Yield of a lot over all its runs, as list of lots, report and command line show it. A part whose values were
+/// confirmed by repeated measurements counts as tested once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, ToSchema)]
 pub struct LotYield {
     /// Parts judged in first tests, that is, not in a retest.
@@ -137,7 +139,7 @@ pub struct LotYield {
     pub first_pass: u64,
     /// Parts that passed in a retest.
     pub retest_pass: u64,
-    /// Suspect parts: judged after a passed reference check and before a failed one.
+    /// Suspect parts: judged before a failed reference check and after the check before it.
     pub suspect: u64,
 }
 
@@ -165,10 +167,9 @@ pub struct ReferenceCheck {
     pub suspect_since: Option<Moment>,
 }
 
-/// SQL condition on `part` that is true for a suspect part: a check after it failed, and none between the two passed.
+/// SQL condition on `part` that is true for a suspect part: a check after it failed, and no check in between passed.
 ///
-/// Instants of one run are in order; runs are in order of their row numbers, because the clock may be set back between
-/// them.
+/// Within a run, times decide the order; between runs, row numbers do, because the clock may be set back between them.
 pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS failed \
     JOIN run AS checked ON checked.id = failed.run_id JOIN run AS own ON own.id = part.run_id \
     WHERE NOT failed.passed AND (part.run_id, part.judged_at_us) <= (failed.run_id, failed.at_us) \
@@ -178,8 +179,8 @@ pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS fai
       AND (run.id = checked.id OR (run.source = 'rig' AND checked.source = 'rig')) \
       AND (part.run_id, part.judged_at_us) <= (good.run_id, good.at_us)))";
 
-/// Stores the state of a lot, `complete` instead of `open` for one that was complete; does nothing for a lot without
-/// runs. Returns the number of changed rows.
+/// Stores the state of a lot; stores `complete` instead of `open` for a lot that was complete before. Does nothing for
+/// a lot without runs. Returns the number of changed rows.
 pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlite::Result<usize> {
     let is_held = record.state == LotState::Held;
     assert!(record.why.is_none() || is_held, "only a hold has a reason");
@@ -227,8 +228,9 @@ pub(super) fn reference_check(
 }
 
 impl Store {
-    /// Opens the lots whose run was cut off, or completes them again after a retest; drops the scans whose parts have not
-    /// come. The caller has just taken the real or the simulated rig, so none of their runs is under way.
+    /// Sets every lot whose run was cut off to open, or to complete if it was complete before, and drops the serial
+    /// numbers that were scanned for parts that never arrived. The caller has just taken the real or the simulated rig,
+    /// so none of its runs is under way.
     pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
         const DOING: &str = "looking for lots that were cut off";
         let transaction = self.transaction(DOING)?;
@@ -272,8 +274,8 @@ impl Archive {
             .doing("reading the state of a lot")
     }
 
-    /// Counts the selected parts of a lot: first tests, those of them that passed, parts that passed in a retest,
-    /// suspect parts.
+    /// Counts of the selected parts: first tests, those of them that passed, parts that passed in a retest, and suspect
+    /// parts.
     pub fn lot_yield(&self, filter: &Filter) -> Result<LotYield> {
         let suspect = self.count_parts(&Filter {
             suspect: true,

@@ -1,9 +1,9 @@
-//! Import of CSV files. The whole file is read and checked before the first row is written.
+//! Imports CSV files: reads and checks the whole file before the first row is written.
 //!
 //! The header names parameter keys, and optionally `time` (RFC 3339), `verdict`, `serial` and `bin`. An empty cell
-//! means that the value was not measured. Columns that only the export writes (`lot`, `seq`, `uncertainty ...`) are
-//! ignored, so that an export can be imported. Any other unknown column is refused, because a misspelt key would lose
-//! its values unnoticed.
+//! means that the value was not measured. The import ignores columns that only the export writes (`lot`, `seq`,
+//! `uncertainty ...`), so that it takes an exported file. It refuses any other unknown column, because a misspelt key
+//! would lose its values unnoticed.
 
 use super::csv::{self, CsvError, Record};
 use super::inquiry::checks::VERDICTS;
@@ -79,7 +79,7 @@ pub enum ImportError {
     },
 }
 
-/// Meaning of a column.
+/// How a column of the file is read.
 enum Column {
     Time,
     Verdict,

@@ -8,7 +8,8 @@ use super::store::RowIds;
 use super::{AlarmRecord, InterruptedRecord, LandingRecord};
 use rusqlite::{OptionalExtension, Transaction, params};
 
-/// Adds bin and time of the landing to the row of a part; only the first call changes the row.
+/// Adds bin and time of the landing to the row of a part. Later calls change nothing, and fail when they name another
+/// bin.
 pub(super) fn landing(tx: &Transaction<'_>, row_ids: &RowIds, it: &LandingRecord) -> Result<()> {
     const DOING: &str = "recording a landing";
     let run = row_ids.run(&it.lot)?;
@@ -43,7 +44,8 @@ pub(super) fn landing(tx: &Transaction<'_>, row_ids: &RowIds, it: &LandingRecord
     landed_before(it, first)
 }
 
-/// Makes a judged part void and assigns bin `retest`; only once, and only before the part has landed.
+/// Makes a judged part void, assigns bin `retest` and adds the reason; does nothing the second time, and nothing after
+/// the part has landed.
 pub(super) fn interrupted(
     tx: &Transaction<'_>,
     row_ids: &RowIds,
@@ -92,7 +94,7 @@ fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
     }
 }
 
-/// Inserts an alarm; for one that has a row, adds only the time at which it was cleared.
+/// Inserts an alarm; for an alarm that already has a row, adds only the time at which it was cleared.
 pub(super) fn alarm(tx: &Transaction<'_>, row_ids: &RowIds, it: &AlarmRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| row_ids.run(lot)).transpose()?;
     insert_alarm(tx, run, it)

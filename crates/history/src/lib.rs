@@ -3,15 +3,16 @@
 //! - [`Store`] is the only writer. It takes records ([`Row`]) in batches, one transaction each: a batch that was
 //!   acknowledged survives power loss, and one that failed leaves no row.
 //! - [`Archive`] is the reader. Command line, page and exports select with the same [`Filter`].
-//! - A row is written once. Recording a part again adds no row; opening a lot again adds a run.
+//! - A part has one row: recording the part again adds none; its landing or interruption completes the row. Opening a
+//!   lot again adds a run.
 //! - Each value is stored with its attempt, limits, uncertainty and budget, and with the raw replies by line, module
 //!   and channel. The run names its recipe and calibration by their hashes.
 //! - Judging by another recipe writes nothing ([`rejudged`]). Only a run that was copied whole can be deleted
 //!   ([`Store::prune`]).
 //! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]).
 //! - A file belongs to one rig, real or simulated: its first run marks it ([`check_rig`]).
-//! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`, `measurements`,
-//!   `samples`, `curves` and `alarms` show local time and names instead of row numbers.
+//! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`,
+//!   `measurements`, `samples`, `curves` and `alarms` show local time and names instead of row numbers.
 //!
 //! The history makes no decisions, computes no statistics (crate `quality` does) and has no clock.
 //!

@@ -32,7 +32,7 @@ pub struct LotSummary {
     /// How the run ended: `complete`, `stopped` or `alarm`; `None` when it has no end, and for runs older than schema
     /// 9.
     pub ended: Option<String>,
-    /// Code of the trouble that ended the run, an alarm or a fault of the program; `None` when no trouble ended it.
+    /// Code of the alarm or program fault that ended the run; `None` when neither did.
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,

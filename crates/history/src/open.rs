@@ -1,7 +1,8 @@
 //! Opens a history file: checks whose it is, brings it to the present schema, makes writes durable.
 //!
-//! 1. A file with tables but another `application_id` belongs to another program. It is refused before any write.
-//! 2. A schema newer than this program is refused; an older one is migrated, all missing steps in one transaction.
+//! 1. A file with tables but another `application_id` belongs to another program; opening it fails before any write.
+//! 2. Opening fails on a schema newer than this program, and migrates an older one: all missing steps in one
+//!    transaction.
 //! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
 //! 4. SQLite may not use bound values for its query plans (`QPSG`), because planning a statement again for each part
 //!    would take longer than running it.
@@ -85,7 +86,8 @@ pub(super) fn unchanged(path: &Path) -> Result<(Connection, i64)> {
     existing(path, OpenFlags::SQLITE_OPEN_READ_ONLY)
 }
 
-/// Returns true when another program has the file open. A damaged file, and one that is no database, counts as not in use.
+/// Returns true when another program has the file open. A damaged file, or a file that is no database, counts as not in
+/// use.
 ///
 /// # Errors
 /// Fails when the file cannot be opened or locked, because then another program may have it open.
@@ -131,8 +133,8 @@ fn existing(path: &Path, access: OpenFlags) -> Result<(Connection, i64)> {
     }
 }
 
-/// Returns a name with which SQLite opens the file as unchanging and makes no files beside it. Fails when SQLite's files
-/// are there already: it would ignore rows in them.
+/// Returns the URI by which SQLite opens the file as immutable and makes no files beside it. Fails when a write-ahead
+/// log or its index is there already, because SQLite would ignore the rows in it.
 fn immutable_name(path: &Path) -> Result<PathBuf> {
     for end in ["-wal", "-shm"] {
         let beside = with_end(path, end);

@@ -1,4 +1,4 @@
-//! Audit of orders: who, from where, which order, which answer. Rows never change.
+//! Audit of orders: who gave which order from where, and how the program answered. Rows never change.
 
 use super::error::{Doing, Result};
 use super::store::RowIds;
@@ -105,8 +105,8 @@ pub struct RevisionEntry {
     pub lines: Vec<String>,
 }
 
-/// Returns the changed keys of a `revise` order and a line for each. The order of an earlier program has new values
-/// only, so it gives lines without changes.
+/// Returns the changed keys of a `revise` order, and a line of text for each. For an order of an earlier program, which
+/// recorded new values only, returns lines but no changed keys.
 fn key_changes(what: &Value) -> (Vec<KeyChange>, Vec<String>) {
     let changes: Vec<KeyChange> =
         serde_json::from_value(what["changes"].clone()).unwrap_or_default();
@@ -120,7 +120,8 @@ fn key_changes(what: &Value) -> (Vec<KeyChange>, Vec<String>) {
     (changes, lines)
 }
 
-/// Returns the Chinese text of a stored refusal; `None` when this version lacks its code or an argument.
+/// Returns the Chinese text of a stored refusal; `None` when this version of the program does not know its code, or
+/// when an argument is missing.
 fn chinese(stored: Value) -> Option<String> {
     let args = serde_json::from_value(stored.get("args")?.clone()).ok()?;
     let code = stored.get("code")?.as_str()?.to_owned();
@@ -151,7 +152,8 @@ impl Archive {
             .doing("reading revisions")
     }
 
-    /// Returns orders in order of time. Of the filter, lot, run, recipe, time span, limit and offset count.
+    /// Returns the orders that lot, run, recipe and time span of the filter select, in order of time; limit and offset of the
+    /// filter count orders.
     pub fn orders(&self, filter: &Filter, choice: &OrderChoice) -> Result<Vec<OrderEntry>> {
         filter
             .orders(choice)

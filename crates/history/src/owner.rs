@@ -6,7 +6,7 @@ use super::{Archive, Filter, Store};
 use rusqlite::{Connection, OptionalExtension};
 use std::path::Path;
 
-/// Marks the file as that of a rig of this kind, real or simulated. Fails when it belongs to one of the other kind.
+/// Marks the file as belonging to a real or to the simulated rig. Fails when it belongs to the other kind.
 pub(super) fn claim(connection: &Connection, path: &Path, simulated: bool) -> Result<()> {
     const DOING: &str = "marking the history with its rig";
     let mark = "INSERT INTO rig (id, source) VALUES (1, ?1) ON CONFLICT DO NOTHING";
@@ -51,10 +51,9 @@ pub fn check_rig(path: &Path, simulated: bool) -> Result<()> {
 }
 
 impl Store {
-    /// Marks the file as that of a rig of this kind.
+    /// Marks the file as belonging to a real or to the simulated rig.
     ///
-    /// # Errors
-    /// Fails when it belongs to a rig of the other kind.
+    /// # Errors Fails when the file belongs to the other kind.
     pub fn claim(&mut self, simulated: bool) -> Result<()> {
         claim(self.connection(), &self.path, simulated)
     }

@@ -38,7 +38,7 @@ pub struct Part {
     pub reason_codes: Vec<Reason>,
     /// Time of the verdict.
     pub time: Moment,
-    /// Time from the raising of the probes to the verdict, seconds of rig time.
+    /// Time from the raising of the probes to the verdict, seconds of rig time (simulated time on a simulated rig).
     pub test_s: Option<f64>,
     /// Time since the previous part left the nest, seconds of rig time.
     pub cycle_s: Option<f64>,

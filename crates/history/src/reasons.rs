@@ -43,7 +43,7 @@ pub(super) fn insert(
 }
 
 /// Texts of reasons before schema 8, one per line: `code|parameter|side|text`, with `*` in place of the detail. This
-/// table is frozen, so later edits of the catalogue do not change how old files are migrated.
+/// table never changes, so old files are migrated alike whatever the present texts are.
 const TEXTS: &str = include_str!("schema/reason_texts.txt");
 
 /// Converts a text that a program before schema 8 wrote; a text that is not known becomes

@@ -1,5 +1,5 @@
-//! Records that the control cycle hands to the history: texts, numbers and reasons. A name in `_us` stands for an
-//! instant in microseconds since 1970 UTC.
+//! Records that the control cycle hands to the history: texts, numbers and reasons. A field whose name ends in `_us`
+//! holds an instant, in microseconds since 1970 UTC.
 //!
 //! A number that is not finite is stored as null.
 
@@ -53,10 +53,11 @@ pub struct PartRecord {
     pub reasons: Vec<Reason>,
     /// Time of the verdict.
     pub judged_at_us: i64,
-    /// Time from the raising of the probes to the verdict, seconds of rig time; NaN for an import.
+    /// Time from the raising of the probes to the verdict, seconds of rig time (simulated time on a simulated rig); NaN
+    /// for an import.
     pub test_s: f64,
-    /// Time since the previous part left the nest, seconds of rig time; `None` while it is unknown, at most until the
-    /// landing.
+    /// Time since the previous part left the nest, seconds of rig time; `None` while unknown: the [`LandingRecord`] may
+    /// still add it.
     pub cycle_s: Option<f64>,
     /// Bin whose beam saw the part fall; `None` until then.
     pub landed_bin: Option<String>,
@@ -175,7 +176,7 @@ pub struct CalibrationRecord {
 }
 
 impl CalibrationRecord {
-    /// Returns true when the calibration has run out at `now_us`, microseconds since 1970 UTC.
+    /// Returns true when the calibration has expired at `now_us`, microseconds since 1970 UTC.
     pub const fn is_overdue(&self, now_us: i64) -> bool {
         self.due_at_us <= now_us
     }

@@ -1,8 +1,8 @@
 //! Judges stored values and curves by another recipe; writes no row.
 //!
-//! - Values are judged as in a run, with their stored uncertainty. A value within its uncertainty of a limit is
-//!   `not proven`, because it cannot be measured again.
-//! - Values that the first recipe states at its reference temperature are converted to that of the other recipe.
+//! - Judges values as a run does, with their stored uncertainty. A value within its uncertainty of a limit is
+//!   `not proven`, because a confirmation measurement is no longer possible.
+//! - Converts values that the first recipe states at its reference temperature to that of the other recipe.
 //! - When a characteristic has no value, its curves may prove that it exceeds the upper limit
 //!   ([`machine::dut::characteristic::KindCharacteristic`]).
 //! - Reasons that depend on no limit (an open circuit, a refused reply) stay.
@@ -50,7 +50,7 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
     }
 }
 
-/// Returns stored value and uncertainty, both times `factor`; NaN when they are missing.
+/// Returns stored value and uncertainty, both multiplied by `factor`; NaN for each that is missing.
 fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     let number = |map: &serde_json::Map<String, serde_json::Value>| {
         let number = map.get(of.key()).and_then(serde_json::Value::as_f64);
@@ -64,8 +64,8 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     }
 }
 
-/// Returns true for a reason that depends on a limit or on a missing value; the other recipe judges it anew. "The
-/// contact did not move" is such a reason when the curves show, by `seen`, that an upper limit is exceeded.
+/// Returns true for a reason that judging by the other recipe replaces, because it depends on a limit or on a missing
+/// value. "The contact did not move" is such a reason when, by `seen`, the curves show that an upper limit is exceeded.
 fn is_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
     match reason.code {
         Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,

@@ -46,7 +46,7 @@ impl Store {
         Ok(noted as u64)
     }
 
-    /// Returns the runs that [`Store::prune`] would empty, oldest first.
+    /// Returns the runs that [`Store::prune`] would delete the parts of, oldest first.
     pub fn prunable(&self, closed_before_us: i64) -> Result<Vec<Pruned>> {
         let found = self
             .prunable_rows(closed_before_us)

@@ -1,8 +1,8 @@
-//! Scans of parts that have not come before the end of their run: their numbers are dropped, and an alarm of the run
-//! names them with the persons who scanned them.
+//! Dropped scans: serial numbers that a person scanned for parts that did not arrive before the end of their run. An
+//! alarm of the run names them, with the persons who scanned them.
 //!
-//! The audit of orders has every scan that the rig took. A scan is done when a row of the run has its number. What is
-//! left waited in the queue, or its part was lost, at the end of the run or when the program was cut off.
+//! The audit of orders has every scan that the rig accepted. A scan is used up when a part of the run has its number.
+//! Any other scan still waited in the queue, or its part was lost, when the run ended or the program was cut off.
 
 use super::AlarmRecord;
 use super::error::{Doing, Result};
@@ -13,16 +13,16 @@ use machine::station::trouble::Alarm;
 use rusqlite::{Connection, Transaction, params};
 use texts::Lang;
 
-/// Scans that the rig took in a run, and scans that a person took back, in order.
+/// Selects the scans that the rig accepted in a run, and the orders that took the last scan back, in order.
 const SCANS: &str = "SELECT what ->> 'order' = 'scan', what ->> 'serial', who FROM ordered
     WHERE at_us >= (SELECT opened_at_us FROM run WHERE id = ?1) AND run_id = ?1 AND refused IS NULL
       AND what ->> 'order' IN ('scan', 'unscan') ORDER BY id";
 
-/// Runs of a rig that were cut off and have no alarm about their scans.
+/// Selects the runs of a rig that were cut off and have no alarm about dropped scans.
 const CUT_OFF: &str = "SELECT id FROM run WHERE closed_at_us IS NULL AND source = ?1
     AND NOT EXISTS (SELECT 1 FROM alarm WHERE run_id = run.id AND code = ?2)";
 
-/// Raises the alarm about the scans that a run has left; does nothing when it has left none.
+/// Raises the alarm about the scans that a run has left unused; does nothing when there are none.
 pub(super) fn drop_left(tx: &Transaction<'_>, run: i64, at_us: i64) -> Result<()> {
     let left = left(tx, run).doing("looking for scans of a run")?;
     if left.is_empty() {
@@ -41,7 +41,7 @@ pub(super) fn drop_left(tx: &Transaction<'_>, run: i64, at_us: i64) -> Result<()
     insert_alarm(tx, Some(run), &record)
 }
 
-/// As [`drop_left`], for the runs of a rig that were cut off; `source` is `rig` or `simulated`.
+/// Does the work of [`drop_left`] for every run of a rig that was cut off; `source` is `rig` or `simulated`.
 pub(super) fn drop_cut_off(tx: &Transaction<'_>, source: &str, at_us: i64) -> Result<()> {
     let code = AlarmCode::ScansDropped.name();
     let runs: Vec<i64> = (tx.prepare(CUT_OFF))
@@ -54,7 +54,7 @@ pub(super) fn drop_cut_off(tx: &Transaction<'_>, source: &str, at_us: i64) -> Re
         .try_for_each(|run| drop_left(tx, run, at_us))
 }
 
-/// Returns number and person of each scan that the run has left, the oldest first.
+/// Returns serial number and person of each scan that the run has left unused, the oldest first.
 fn left(connection: &Connection, run: i64) -> rusqlite::Result<Vec<(String, String)>> {
     let mut left: Vec<(String, String)> = Vec::new();
     let mut scans = connection.prepare(SCANS)?;

@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 const DOING: &str = "reading the serial numbers of a lot";
 
 impl Store {
-    /// Returns how many serial numbers the rig has given to parts of a lot: each run gave one to every part up to its
-    /// last.
+    /// Returns how many serial numbers the rig has given to the parts of a lot: the sum, over its runs, of the number
+    /// of the last part.
     pub fn parts_numbered(&self, lot: &str) -> Result<u64> {
         let sql = "SELECT ifnull(sum(last), 0) FROM (
               SELECT max(part.seq) AS last FROM part

@@ -1,14 +1,14 @@
 //! Packed values of closed runs, for statistics over many runs.
 //!
-//! When a run is closed, the values of its production parts that count (judged, and not measured again) are packed into
-//! one blob per parameter: 8 bytes per value instead of the 31 of an index entry, and no decoding row by row. Filters
-//! that select whole runs read the blobs; other filters, and runs that were never closed, read the index
-//! `measurement_value`. Both ways give the same values in the same order.
+//! [`Store::close_lot`](super::Store::close_lot) packs the values of production parts that count (a number from the
+//! last attempt, unless this attempt is void) into one blob per parameter of the run: 8 bytes per value instead of the
+//! 31 of an index entry, and no decoding row by row. Filters that select whole runs read the blobs; other filters, and
+//! runs that were never closed, read the index `measurement_value`. Both ways give the same values in the same order.
 
 use super::{Archive, Filter};
 use rusqlite::{Connection, OptionalExtension, params};
 
-/// Selects, of one run, each part with its value of a parameter that counts, in no particular order.
+/// Selects the parts of one run that have a counted value of a parameter, with this value, in no particular order.
 pub(super) const OF_RUN: &str = "SELECT part_id, value FROM measurement
     WHERE parameter_id = ?1 AND population = 'lot' AND run_id = ?2
       AND part_verdict IN ('pass', 'fail', 'void', 'unjudged')";
@@ -54,7 +54,7 @@ pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     runs.into_iter().try_for_each(|run| pack(connection, run))
 }
 
-/// Reads the unpacked values of one run from the index `measurement_value`; `None` when the run has no value.
+/// Reads the values of one run from the index `measurement_value`; `None` when the run has no value.
 fn loose(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
     let mut found: Vec<(i64, f64)> = connection
         .prepare_cached(OF_RUN)?
@@ -89,8 +89,8 @@ fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result
 }
 
 impl Archive {
-    /// Returns the values of `param` in order of judgement, those of each run side by side; `None` when the filter
-    /// selects only some parts of a run, or when parts of two runs alternate in time.
+    /// Returns the values of `param` in order of judgement, one run after the other; `None` when the filter selects
+    /// only some parts of a run, or when parts of two runs alternate in time.
     pub(super) fn side_by_side(
         &self,
         param: &str,

@@ -33,7 +33,7 @@ pub(super) struct RowIds {
 }
 
 impl RowIds {
-    /// Returns the row number of the open run of `lot`.
+    /// Returns the row number of the open run of `lot`; fails when this writer has opened none.
     pub fn run(&self, lot: &str) -> Result<i64> {
         let missing = || HistoryError::LotNotOpen {
             lot: lot.to_owned(),
@@ -90,8 +90,8 @@ impl Store {
         Ok(number)
     }
 
-    /// Closes the run of the lot, packs its values and drops the scans whose parts have not come; later rows for it are
-    /// refused. After an error it is still open.
+    /// Closes the run of the lot, packs its values and drops the scans of parts that never arrived; later rows for the
+    /// run are refused. After an error the run is still open.
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
         const DOING: &str = "closing the lot";
         let run = self.row_ids.run(lot)?;
@@ -111,8 +111,8 @@ impl Store {
 
     /// Writes a batch in one transaction; on an error no row of it is written.
     ///
-    /// A part or landing that equals its row is skipped, so the caller may send a batch again after an error that does
-    /// not tell whether it was written. A part that differs from its row is refused.
+    /// A part or landing that equals its row is skipped, so after an error that leaves open whether the batch was
+    /// written the caller may send it again. A part that differs from its row is refused.
     pub fn record(&mut self, rows: &[Row]) -> Result<()> {
         const DOING: &str = "recording";
         let Self {
@@ -143,8 +143,8 @@ impl Store {
         save(&self.connection, calibration)
     }
 
-    /// Returns the calibration for one coil voltage that was stored last, expired or not, of the real or the simulated
-    /// rig. Its date may be before that of an earlier one, after the clock was set back.
+    /// Returns the calibration that was stored last for one coil voltage, expired or not, of the real or the simulated
+    /// rig. After the clock was set back, this may not be the calibration with the latest date.
     pub fn latest_calibration_of(
         &self,
         simulated: bool,

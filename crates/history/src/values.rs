@@ -89,8 +89,8 @@ impl Archive {
 /// number.
 const EMPTY: usize = 3;
 
-/// Orders values by the row number of their part, which grows in order of judgement. While row numbers have few gaps,
-/// writes each value straight to its place; else sorts.
+/// Orders values by the row number of their part, which grows in order of judgement: places each value by its row
+/// number while the gaps between row numbers are few, and sorts otherwise.
 fn in_order(mut found: Vec<(i64, f64)>) -> Box<dyn Iterator<Item = f64>> {
     let parts = found.iter().map(|&(part, _)| part);
     let (Some(first), Some(last)) = (parts.clone().min(), parts.max()) else {

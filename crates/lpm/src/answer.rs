@@ -10,7 +10,7 @@ pub struct ElementKey {
 }
 
 impl ElementKey {
-    /// Stands for the blocker when the move or the mover itself is invalid, so that no element is to blame.
+    /// Blocker of a move that no element blocks, because the move or the mover itself is invalid.
     /// [`Model::id`](super::Model::id) returns `"(undecidable)"` for this key.
     pub const UNDECIDABLE: ElementKey = ElementKey {
         slot: u32::MAX,
@@ -18,7 +18,7 @@ impl ElementKey {
     };
 }
 
-/// A move of one mover. When the rotations of start and end agree, it is a straight translation; else the position
+/// A move of one mover. With equal rotations at start and end it is a straight translation; otherwise the position
 /// changes linearly while the mover turns along the shortest way.
 #[derive(Debug, Clone, Copy)]
 pub struct Move<'a> {
@@ -26,14 +26,14 @@ pub struct Move<'a> {
     pub from: Pose,
     /// Pose of the mover at the end.
     pub to: Pose,
-    /// Distance to every element that the mover must exceed during the whole move, mm, >= 0.
+    /// Margin, mm, >= 0: during the whole move the distance to every element must exceed it.
     pub margin_mm: f64,
     /// Elements that the check leaves out.
     pub ignore: &'a [ElementKey],
 }
 
 impl Move<'_> {
-    /// Returns true when start and end agree bit by bit. (0 and -0 differ; such a move is checked as a path of length
+    /// Returns true when start and end are bitwise equal. (0 and -0 differ; such a move is checked as a path of length
     /// 0.)
     #[inline]
     pub(crate) fn is_at_rest(&self) -> bool {
@@ -54,11 +54,11 @@ impl Move<'_> {
 pub enum Answer {
     /// Proven: the distance stays above the margin during the whole move.
     Clear,
-    /// The mover comes within the margin, or the opposite could not be proven.
+    /// The mover comes within the margin of an element, or the check could not prove the opposite.
     Blocked(Contact),
 }
 
-/// Where a move first comes within its margin.
+/// The first point of a move that is within the margin of an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Fraction of the move, 0 to 1; never later than the true contact.
@@ -76,11 +76,11 @@ pub struct Contact {
 /// Least distance from the mover to any element over a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
-    /// Least distance, mm; 0 when bodies meet. At most 1e-9 mm above the true distance for straight moves, and 5e-4 mm
-    /// for turning ones.
+    /// Least distance, mm; 0 when the bodies meet. It exceeds the true distance by at most 1e-9 mm for straight moves,
+    /// and by at most 5e-4 mm for turning ones.
     pub distance_mm: f64,
     /// Element with this distance.
     pub nearest: ElementKey,
-    /// Fraction of the move, 0 to 1, at which this element is nearest; one of them when there are several.
+    /// Fraction of the move, 0 to 1, at which this element is nearest; any such fraction when there are several.
     pub t: f64,
 }

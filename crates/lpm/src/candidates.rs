@@ -1,10 +1,10 @@
-//! Keeps the stationary pieces whose boxes the mover meets, and returns first the one whose box it meets first. A piece
-//! that lies in several cells of the grid comes once per cell.
+//! Collects the stationary pieces whose boxes the mover meets, and returns them in the order in which it meets the
+//! boxes. A piece that lies in several cells of the grid appears once per cell.
 
 use super::space::LANES;
 
-/// Most candidates that are kept. When there are more, some are checked out of order, which costs time but changes no
-/// answer.
+/// Greatest number of candidates kept. When there are more, some are checked out of order, which costs time but changes
+/// no answer.
 const MOST: usize = 32;
 
 /// The candidates found so far, at most [`MOST`].
@@ -42,7 +42,8 @@ impl Candidates {
         self.count > MOST - LANES
     }
 
-    /// Adds the lanes of a bundle that `lanes` marks, as far as there is room; mostly one or two are marked.
+    /// Adds the lanes of a bundle that `lanes` marks, usually one or two. The caller ensures that there is room
+    /// ([`Self::is_full`]).
     #[inline]
     pub(crate) fn push(&mut self, bundle: u32, lanes: u32, entry: &[f32; LANES]) {
         let place = u64::from(bundle * LANES as u32);
@@ -56,7 +57,8 @@ impl Candidates {
         }
     }
 
-    /// Removes and returns the candidate met earliest; drops all candidates when even this one is met after `until`.
+    /// Removes and returns the candidate met earliest; when the mover meets even this one after `until`, drops all
+    /// candidates and returns `None`.
     #[inline]
     pub(crate) fn earliest(&mut self, until: f64) -> Option<Place> {
         let known = &mut self.keys[..self.count.min(MOST)];

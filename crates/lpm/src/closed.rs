@@ -1,25 +1,24 @@
 //! Finds the triangles of a mesh that enclose a space.
 //!
-//! Mesh files are untidy. Surfaces occur twice, or inside each other; stray triangles lie beside them and walls within
-//! them; an edge may lack a corner that the triangle on its other side has. A body inside such a mesh touches no
-//! triangle, so the enclosed spaces must be found nevertheless:
-//! 1. Corners nearer to each other than [`WELD_MM`] are merged. Triangles that become a segment or a point enclose
-//!    nothing.
-//! 2. A triangle that occurs several times counts once. A triangle that occurs in both orientations within a connected
-//!    part is a wall between two spaces and is left out, unless every triangle of the part occurs in both.
-//! 3. A free edge (an edge of one triangle only) is cut at those corners of other free edges that lie on it.
-//! 4. Triangles with a free edge are removed until none has one; what remains is closed.
-//! 5. Triangles that are connected by edges form one surface.
+//! Mesh files are untidy. Surfaces occur twice or inside each other; stray triangles lie beside surfaces, and walls
+//! inside them; an edge may lack a corner that the triangle on its other side has. A body inside such a mesh touches no
+//! triangle, so this module must find the enclosed spaces all the same:
+//! 1. Merge corners nearer to each other than [`WELD_MM`]. Triangles that become a segment or a point enclose nothing.
+//! 2. Count a triangle that occurs several times once. A triangle that occurs in both orientations within a connected
+//!    part is a wall between two spaces; leave it out, unless every triangle of the part occurs in both.
+//! 3. Cut a free edge (an edge of only one triangle) at those corners of other free edges that lie on it.
+//! 4. Remove triangles with a free edge until none has one; the rest is closed.
+//! 5. Group the triangles that are connected by edges into surfaces.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::shape::Mesh;
 use super::vector::{Vec3, add, dot, length, scale, sub};
 
-/// Corners nearer to each other than this are merged, mm. A move may be blocked by as much too early, and programs that
-/// write one corner twice round by less.
+/// Corners nearer to each other than this are merged, mm. Merging may block a move too early by as much; programs that
+/// write one corner twice differ by less, because they only round it.
 const WELD_MM: f64 = 1e-6;
-/// Most rounds of cutting; each round cuts every free edge once.
+/// Maximum number of rounds of cutting; each round cuts every free edge at most once.
 const MOST_CUTS: usize = 16;
 /// A mesh with more free edges than this counts as open on purpose.
 const MOST_FREE: usize = 2_000;
@@ -30,9 +29,11 @@ pub(crate) type Corners = [usize; 3];
 /// A surface that encloses a space.
 pub(crate) struct Surface {
     pub(crate) triangles: Vec<Corners>,
-    /// Each edge belongs to an even number of triangles, so a path that crosses the surface once changes sides.
+    /// True when each edge belongs to an even number of triangles: a path that crosses the surface once then changes
+    /// sides.
     pub(crate) is_even: bool,
-    /// Along each edge, as many triangles run one way as the other, so the surface has an inside and an outside.
+    /// True when along each edge as many triangles run one way as the other: the surface then has an inside and an
+    /// outside.
     pub(crate) is_oriented: bool,
 }
 
@@ -54,8 +55,8 @@ pub(crate) fn closed_surfaces(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Ve
     surfaces(&closed(vertices, &proper))
 }
 
-/// Removes every open triangle of a part. Leaves walls out when the other triangles are closed without them and the
-/// walls enclose no space of their own.
+/// Returns the triangles of a part that remain after cutting and removing open ones. Leaves walls out when the other
+/// triangles are closed without them and the walls enclose no space of their own.
 fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
     let has_reverse = |corners: &Corners| part.contains(&reversed(*corners));
     let (paired, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_reverse(it));
@@ -72,7 +73,7 @@ fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
     without_free_triangles(cut_free_edges(vertices, [alone, walls].concat()))
 }
 
-/// Returns, for each vertex, the index of the first vertex that is nearer to it than [`WELD_MM`]; perhaps its own.
+/// Returns, for each vertex, the index of the first vertex nearer to it than [`WELD_MM`], which may be its own.
 fn weld(vertices: &[Vec3]) -> Vec<usize> {
     let mut exact = HashMap::new();
     let mut near: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
@@ -96,7 +97,7 @@ fn weld(vertices: &[Vec3]) -> Vec<usize> {
     welded
 }
 
-/// Rotates the indices so that the lowest comes first; triangles with the same corners and orientation become equal.
+/// Rotates the indices so that the lowest comes first, which makes triangles with equal corners and orientation equal.
 fn lowest_first([a, b, c]: Corners) -> Corners {
     if a < b && a < c {
         [a, b, c]
@@ -187,7 +188,7 @@ fn cut_free_edges(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners
     triangles
 }
 
-/// Returns true when a vertex lies strictly between two others, on the line through them.
+/// Returns true when a vertex lies strictly between two others and within [`WELD_MM`] of the line through them.
 fn lies_on(vertices: &[Vec3], vertex: usize, (p, q): (usize, usize)) -> bool {
     if vertex == p || vertex == q {
         return false;

@@ -1,9 +1,9 @@
-//! Searches for contacts on a path: first by closed forms, later by iterative searches.
+//! Searches for contacts on a path: first by closed forms, then by iterative searches.
 //!
-//! A pair of upright pieces on a straight path is decided by a closed form as soon as the broad phase reports it
+//! A closed form decides a pair of upright pieces on a straight path as soon as the broad phase reports the pair
 //! ([`meeting`](super::meeting)). A pair that needs a search (tilted pieces, triangles, turns) goes onto a list, once.
-//! The pairs on the list are searched in the order in which their boxes meet: a contact shortens the path for all later
-//! pairs, so the first contact is found soonest this way.
+//! The search takes the pairs on the list in the order in which their boxes meet: a contact shortens the path for all
+//! later pairs, so this order finds the first contact soonest.
 
 use super::candidates::Candidates;
 use super::distance::Gap;
@@ -35,7 +35,7 @@ pub(crate) struct Found {
     evidence: Evidence,
 }
 
-/// How a contact was found, with what is needed to compute its place and normal.
+/// How a contact was found, with the data from which its place and normal follow.
 #[derive(Debug, Clone)]
 enum Evidence {
     /// Index of the piece of the mover. Both pieces are upright, so a closed form gives place and normal.
@@ -72,7 +72,7 @@ impl Found {
 }
 
 impl Passage<'_> {
-    /// Searches for a contact within the margin. If `found` holds none afterwards, it is proven that there is none.
+    /// Searches for a contact within the margin. When `found` holds none afterwards, there is provably none.
     pub(crate) fn contact<'a>(&'a self, found: &mut Findings<'a>) {
         for group in &self.body.groups {
             let hull = group.hull(&self.whereabouts(self.way.margin_mm));
@@ -98,7 +98,7 @@ pub(crate) struct Findings<'a> {
 }
 
 impl Findings<'_> {
-    /// Starts with no contact found; `wanted` tells which contact the question asks for.
+    /// Starts with no contact found; `wanted` says which contact the question asks for.
     #[inline]
     pub(crate) fn wanted(wanted: Wanted) -> Self {
         Findings {
@@ -136,16 +136,16 @@ struct Search<'a, 'b> {
     group: &'a Group,
     found: &'b mut Findings<'a>,
     sweep: &'b Sweep,
-    /// Boxes of the pieces, computed when first needed.
+    /// Boxes of the group's pieces; the search computes them when it first needs them.
     boxes: Option<Boxes<MOST_OF_A_GROUP>>,
-    /// The pieces at the start of the path, each computed when first needed.
+    /// The group's pieces at the start of the path; the search computes each when it first needs it.
     prisms: [Option<Prism>; MOST_OF_A_GROUP],
     candidates: Candidates,
 }
 
 impl Visit for Search<'_, '_> {
-    /// Returns true when pieces wait as candidates and are checked in order, because the first contact is wanted. For
-    /// any contact they are checked at once.
+    /// Returns true when the question asks for the first contact: pieces then wait as candidates, so that the search
+    /// checks them in order. For any contact it checks them at once.
     #[inline]
     fn in_order(&self) -> bool {
         self.found.wanted == Wanted::First
@@ -183,7 +183,7 @@ impl Visit for Search<'_, '_> {
         while let Some(place) = self.candidates.earliest(self.found.until()) {
             let bundle = self.passage.model.space.bundle(place.bundle());
             let piece = bundle.piece(place.lane());
-            // The entries of a piece that lies in several cells are equally early, so they are adjacent.
+            // The entries of a piece that lies in several cells are equally early and therefore adjacent.
             if last != Some(piece) {
                 last = Some(piece);
                 self.piece(piece, &bundle.cover(place.lane()));
@@ -212,7 +212,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// Checks the pieces of the group that may meet this stationary piece.
+    /// Checks this stationary piece against the pieces of the group whose boxes meet its box.
     #[inline]
     fn piece(&mut self, element: u32, cover: &Cover) {
         let until = self.found.until();
@@ -280,8 +280,8 @@ impl Passage<'_> {
         if margin == 0.0 {
             return Some((t, None));
         }
-        // Heights and footprints are each within the margin, but diagonally over an edge the distance can exceed the
-        // margin.
+        // Heights and footprints are each within the margin, but the diagonal distance over an edge may still exceed
+        // it.
         let (element, mover) = (element.piece(), mover.piece());
         let hit = straight::first_within(&element, &mover, run.way, margin, t, until)?;
         Some((hit.t, Some(hit.gap)))

@@ -1,14 +1,14 @@
 //! First contact of two grazing discs, in double-double precision.
 //!
-//! On a grazing pass, the fraction of the path at which contact begins depends on the root of a small difference of
-//! radii: a rounding of 1e-12 mm moves the contact by 1e-5 mm. Where the places of the bodies themselves are exact,
+//! On a grazing pass, the fraction of the path at which contact begins depends on the square root of a small difference
+//! of radii: a rounding of 1e-12 mm moves the contact by 1e-5 mm. Where the places of the bodies themselves are exact,
 //! arithmetic with twice the digits decides whether the discs touch at all, and where.
 
 /// A number as a sum of two f64, the second below the last place of the first (after Dekker and Knuth).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Twofold(f64, f64);
 
-/// Relative error bound: a dozen operations with an error of 2^-104 each, and a wide reserve.
+/// Relative error bound: a dozen operations with an error of 2^-104 each, and an ample reserve.
 const ROUNDING: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
 
 impl Twofold {

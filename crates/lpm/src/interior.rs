@@ -13,7 +13,7 @@ use super::vector::{Vec3, add};
 /// What a body has besides its pieces: enclosed spaces and test points.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interior {
-    /// Closed surfaces of the body.
+    /// Closed surfaces of the body, as solids.
     pub(crate) solids: Vec<Solid>,
     /// One point of each connected part, to test whether the part lies inside another body.
     pub(crate) witnesses: Vec<Vec3>,

@@ -55,15 +55,16 @@
 //! # Never a false clear
 //! Bodies are closed sets: touching is contact. *Blocked* means that the distance comes within the margin, or that this
 //! could not be excluded. The proof of *clear* has these steps:
-//! 1. A pair of upright pieces on a straight path is clear when a line misses a figure that was grown by twice the
-//!    rounding of the arithmetic (argument in `meeting`).
+//! 1. A pair of upright pieces on a straight path is clear when the path, as a line, misses a figure that is grown by
+//!    twice the rounding of the arithmetic (argument in `meeting`).
 //! 2. Any other pair of convex pieces is clear for a stretch of the path only if a plane proves it. The separation by
-//!    this plane is computed in f64 from the support functions of both pieces, and a forward error bound is subtracted
-//!    (`piece::NOISE` times the sum of all magnitudes that entered). How the plane was found does not matter.
+//!    this plane is computed in f64 from the support functions of both pieces, less a forward error bound
+//!    (`piece::NOISE` times the sum of all magnitudes that entered). The way in which the plane was found does not
+//!    matter.
 //! 3. Along a translation the separation by a fixed plane is linear; along a turn `turning` bounds it from below. A
 //!    stretch ends where this separation reaches the margin, and stretches follow each other without a gap.
 //! 4. When the broad phase drops a pair, the boxes of its pieces never overlap during the move. These boxes are rounded
-//!    outward by the same error bound and then to single precision. Everything that the broad phase computes along the
+//!    outward by the same error bound and then to single precision. Every place that the broad phase computes along the
 //!    path carries `space::sweep::SLACK_MM`, and rounding heights to layers keeps their order.
 //! 5. `solid` finds a body inside a closed mesh, and counts a doubtful body as inside; `closed` finds the closed
 //!    surfaces of a mesh, however untidy its file is.

@@ -7,11 +7,11 @@
 //! discs for round corners, and where a line crosses a slab or a disc has a closed form.
 //!
 //! # Never a false clear
-//! Every slab and disc is grown by [`Meeting::slack`]: by [`NOISE`] for how the pieces came to their places, and by
-//! [`ROUNDING`] for what is computed here. A line that meets the true figure meets the grown one, earlier by at least
-//! this slack divided by its speed; so the returned fraction is never late, and `None` is proof. Where a corner is
-//! grazed and nothing was rounded before, [`grazing`] may move the fraction later, to the true one rounded down.
-//! Conversely, a reported pair comes within three slacks of contact: below 1e-7 mm for coordinates of 1e6 mm.
+//! Every slab and disc is grown by [`Meeting::slack`]: by [`NOISE`] for the rounding of the pieces' places, and by
+//! [`ROUNDING`] for the rounding of this computation. A line that meets the true figure meets the grown one, earlier by
+//! at least this slack divided by its speed; so the returned fraction is never late, and `None` is proof. Where a
+//! corner is grazed and the places have no rounding, [`grazing`] may move the fraction later, to the true one rounded
+//! down. Conversely, a reported pair comes within three slacks of contact: below 1e-7 mm for coordinates of 1e6 mm.
 
 use super::grazing::{self, Twofold};
 use super::path::Path;
@@ -19,15 +19,15 @@ use super::piece::NOISE;
 use super::prism::Prism;
 use super::vector::{Vec3, reach, sub};
 
-/// Relative error bound of the computation here, which leads from the difference of two places, and the run, to a
-/// fraction of the path: fewer than 16 roundings of 2^-53 each; the bound allows twice that.
+/// Relative error bound of this computation, from the difference of two places and the run to a fraction of the path:
+/// fewer than 16 roundings of 2^-53 each; the bound allows twice that.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 
-/// How early a grazing contact may come before more digits refine it, mm: a tenth of the promised 1e-6 mm.
+/// Greatest distance by which a grazing contact may come early without refinement, mm: a tenth of the promised 1e-6 mm.
 const GRAZED_MM: f64 = 1e-7;
 
-/// A contact nearer than this to the end of a round corner is not refined, mm, because beyond that end a side may come
-/// first. This distance exceeds all rounding.
+/// Distance from the end of a round corner within which a contact is not refined, mm, because beyond that end a side
+/// may come first. It exceeds all rounding.
 const ROUND_MM: f64 = 1e-3;
 
 /// A straight path, with the reciprocals of its displacement.
@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Returns the reciprocal of a rate; 0 for a rate too small to divide by.
+/// Returns the reciprocal of a rate; 0 for a rate whose reciprocal is not usable.
 #[inline]
 fn pace(rate: f64) -> f64 {
     if rate.abs() < 1e-290 { 0.0 } else { 1.0 / rate }
@@ -65,7 +65,7 @@ pub(crate) struct Meeting<'a> {
     /// Vector from the element to the mover at the start.
     apart: Vec3,
     run: &'a Run<'a>,
-    /// By how much every figure is grown, mm: margin plus slack.
+    /// Width by which every figure is grown, mm: margin plus slack.
     grown: f64,
     slack: f64,
 }
@@ -130,8 +130,8 @@ impl<'a> Meeting<'a> {
         Some(self.grazed(framed, t).unwrap_or(t))
     }
 
-    /// Returns the fraction in double-double precision, if a round corner is grazed and the places were reached without
-    /// rounding; never before `t`, at which the grown figures meet.
+    /// Returns the fraction in double-double precision, never before `t`, at which the grown figures meet. `None`
+    /// unless a round corner is grazed and the places have no rounding.
     fn grazed(&self, framed: &Prism, t: f64) -> Option<f64> {
         let at = [0, 1].map(|axis: usize| self.apart[axis] + t * self.run.way[axis]);
         let half = self.halves();
@@ -142,8 +142,8 @@ impl<'a> Meeting<'a> {
             (u * u + v * v).sqrt(),
         );
         let closing = (w[0] * u + w[1] * v).abs();
-        // The slack, divided by the sine of the grazing angle, moves the contact along the path; at rest there is no
-        // graze.
+        // The slack, divided by the sine of the grazing angle, shifts the contact along the path; at rest there is no
+        // grazing.
         let is_graze = closing * GRAZED_MM < self.slack * radius * speed;
         if !is_graze {
             return None;

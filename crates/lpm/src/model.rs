@@ -44,7 +44,7 @@ impl Model {
         Model::default()
     }
 
-    /// Adds one element. `id` is used in messages only and need not be unique.
+    /// Adds one element. Only messages use `id`; it need not be unique.
     ///
     /// # Errors
     /// Fails with the [`Flaw`] of the shape or the pose; the model stays unchanged.
@@ -94,7 +94,7 @@ impl Model {
         Ok(model)
     }
 
-    /// Makes the slot of an element whose pieces are already entered; keeps its name and its enclosed spaces.
+    /// Makes the slot of an element whose pieces are already in the model; stores its name and its enclosed spaces.
     #[inline]
     fn taken(&mut self, id: &str, shape: &Shape, pose: &Pose, key: ElementKey, first: u32) -> Slot {
         let interior = match shape {
@@ -176,7 +176,7 @@ impl Model {
         self.taken_slots().map(|slot| self.key(slot))
     }
 
-    /// Returns the heap that the model uses, bytes, without closed meshes, which are stored separately.
+    /// Returns the heap in use, bytes, without that of closed meshes.
     pub fn heap_bytes(&self) -> usize {
         let numbers = self.free.capacity() + self.hollow.capacity();
         self.slots.capacity() * size_of::<Slot>()
@@ -203,8 +203,8 @@ impl Model {
         self.slots[slot as usize].first
     }
 
-    /// Returns a point of one body, the element in a slot or `other`, that lies inside the other one, although their
-    /// surfaces need not meet.
+    /// Returns a point of one body, the element in a slot or `other`, that lies inside the other body; `None` without
+    /// one. Such bodies need not touch with their surfaces.
     pub(crate) fn shared_point(&self, slot: u32, other: &Interior) -> Option<[f64; 3]> {
         let slot = &self.slots[slot as usize];
         match &slot.interior {

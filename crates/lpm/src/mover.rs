@@ -8,7 +8,7 @@ use super::shape::{Flaw, Shape};
 use super::space::{Boxes, Cover, Four, SLOWEST_MM};
 use super::vector::{Vec3, add, length, reach};
 
-/// Most pieces in a group; as many can be placed at once without heap allocation.
+/// Maximum number of pieces in a group; a group can be placed at once without heap allocation.
 pub(crate) const MOST_OF_A_GROUP: usize = 4;
 
 /// A checked body in its own frame, split into pieces; it serves for any number of questions.
@@ -35,11 +35,11 @@ pub(crate) struct Group {
     half: [f32; 4],
     /// Largest distance of a point of the group from the origin of the body, rounded outward, mm.
     ball: f64,
-    /// By how much the boxes of the group are widened at any place, mm.
+    /// Width by which the boxes of the group grow at any place, mm.
     wider: f64,
 }
 
-/// Where the boxes of a group are computed: place, orientation and path.
+/// Place, orientation and path for which the boxes of a group are computed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Whereabouts<'a> {
     /// Origin of the body at rest or at the start of its path, mm.
@@ -47,7 +47,7 @@ pub(crate) struct Whereabouts<'a> {
     pub(crate) orientation: Orientation<'a>,
     /// Displacement of the body, mm.
     pub(crate) run: Vec3,
-    /// By how much the boxes are widened for the margin, mm.
+    /// Width by which the boxes grow for the margin, mm.
     pub(crate) margin_mm: f64,
 }
 
@@ -61,8 +61,8 @@ pub(crate) enum Orientation<'a> {
     Turning,
 }
 
-/// Rounding of the boxes of a placed group, relative to the sizes of group and path along the axis: fewer than ten
-/// roundings to single precision, plus the error of a [`RoughYaw`].
+/// Rounding bound of the boxes of a placed group, relative to the sizes of group and path along the axis: fewer than
+/// ten roundings to single precision, plus the error of a [`RoughYaw`].
 const SINGLE: f64 = 1e-6;
 
 impl Mover {
@@ -86,7 +86,7 @@ impl Mover {
         })
     }
 
-    /// Returns true when the body encloses a space in which another can lie without touching its triangles.
+    /// Returns true when the body encloses a space in which another body can lie without touching its triangles.
     pub(crate) fn is_hollow(&self) -> bool {
         self.interior
             .as_ref()
@@ -144,14 +144,14 @@ impl Group {
         group
     }
 
-    /// Returns a mask of the group's places that hold a piece (bit k: place k).
+    /// Returns a mask of the places of the group that hold a piece (bit k: place k).
     #[inline]
     pub(crate) fn used(&self) -> u32 {
         (1 << self.count) - 1
     }
 
-    /// Returns by how much a box is widened along each axis, mm: for the margin and for all rounding to single
-    /// precision. The rounding along an axis grows with the places along this axis and with the size of the group.
+    /// Returns the width by which a box grows along each axis, mm: for the margin and for all rounding to single
+    /// precision. The rounding along an axis grows with the coordinates along this axis and with the size of the group.
     #[inline(always)]
     fn wider(&self, at: &Whereabouts) -> Four {
         let always = (self.wider + at.margin_mm * (1.0 + SINGLE)) as f32;
@@ -257,8 +257,8 @@ pub(crate) fn reach_of(piece: &Piece) -> f64 {
 
 /// A body that questions accept: a [`Mover`], or a [`Shape`], which is split into pieces for each question.
 pub trait Moving {
-    /// Calls `ask` with the body split into pieces; returns `None` when the shape is flawed. Questions then answer
-    /// blocked.
+    /// Calls `ask` with the body split into pieces; returns `None` when the shape is flawed, which a question must
+    /// answer as blocked.
     fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A>;
 }
 

@@ -8,14 +8,14 @@ pub(crate) struct Name {
 }
 
 /// Names of all elements. A released name leaves a gap; when the gaps outweigh the names ([`Names::is_mostly_gaps`]),
-/// the model writes all names anew.
+/// the model rewrites all names.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Names {
     text: String,
     gaps: usize,
 }
 
-/// Total length of the gaps, bytes, up to which rewriting does not pay.
+/// Total length of the gaps, bytes, below which rewriting does not pay.
 const SMALL: usize = 4096;
 
 impl Names {
@@ -37,7 +37,8 @@ impl Names {
     /// Releases a name.
     pub(crate) fn release(&mut self, name: &Name) {
         self.gaps += name.length as usize;
-        // The last name leaves no gap, so inserting and removing one element again and again costs nothing.
+        // The last name leaves no gap, so that inserting and removing one element again and again does not grow the
+        // text.
         if (name.start + name.length) as usize == self.text.len() {
             self.text.truncate(name.start as usize);
             self.gaps -= name.length as usize;

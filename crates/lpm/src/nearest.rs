@@ -1,4 +1,4 @@
-//! Least distance over a path: examines every pair whose boxes come near enough, the nearest first.
+//! Least distance over a path: examines every pair whose boxes come close enough, nearest pairs first.
 
 use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending, once_in_order};
@@ -6,7 +6,7 @@ use super::space::{Bundle, Cover, LANES, Sweep, Visit};
 use super::straight;
 use super::turning::Turning;
 
-/// Least distance, mm, with the piece that has it and the fraction of the path at which it does.
+/// Least distance, mm, with the stationary piece and the fraction of the path at which it occurs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nearest {
     pub(crate) distance_mm: f64,
@@ -81,7 +81,7 @@ impl Passage<'_> {
         least
     }
 
-    /// Returns the pairs whose boxes come within `range_mm` of each other, with this distance.
+    /// Returns the pairs whose boxes come within `range_mm` of each other, each with the distance of its boxes.
     fn within(&self, range_mm: f64) -> Vec<Pending> {
         let mut pending = Vec::new();
         let run = self.path.displacement;

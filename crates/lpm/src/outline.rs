@@ -1,7 +1,7 @@
 //! Silhouettes for a drawing: the outline of a body seen from above or from the front.
 //!
-//! Every convex piece gives one convex polygon, counter-clockwise. The rim of a cylinder is drawn with [`RIM`] corners,
-//! which is less than 1 % of its radius off the true outline. These are for pictures only; no collision answer uses
+//! Every convex piece gives one convex polygon, counter-clockwise. The rim of a cylinder has [`RIM`] corners, which is
+//! less than 1 % of its radius off the true outline. The silhouettes are for pictures only; no collision answer uses
 //! them.
 
 use super::pose::{Frame, Pose};
@@ -40,7 +40,7 @@ fn flat(corner: Vec3, view: View) -> [f64; 2] {
     }
 }
 
-/// Passes the corners of every convex piece, at its place, to `give`.
+/// Passes the corners of every convex piece of the placed shape to `give`.
 fn collect(shape: &Shape, frame: &Frame, position: Vec3, give: &mut impl FnMut(Vec<Vec3>)) {
     let place = |corner: Vec3| add(frame.apply(corner), position);
     match shape {

@@ -23,7 +23,7 @@ pub(crate) struct Passage<'a> {
 /// A piece of an element and a piece of the mover that still need a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
-    /// Key by which pairs are sorted: the least is searched first.
+    /// Sort key: the search takes the pair with the least key first.
     pub(crate) order: f64,
     pub(crate) element: u32,
     pub(crate) local: u32,
@@ -65,7 +65,7 @@ impl<'a> Passage<'a> {
         &self.body.pieces[index as usize]
     }
 
-    /// Returns true when the element of this piece counts, that is, unless the move ignores it.
+    /// Returns true unless the move ignores the element of this piece.
     #[inline]
     pub(crate) fn counts(&self, element: &Stationary) -> bool {
         self.way.ignore.is_empty() || !self.way.ignore.contains(&element.owner)

@@ -21,8 +21,8 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    /// Converts a move. Returns `None` when a number is not finite or the margin is invalid; such a move cannot be
-    /// decided.
+    /// Converts a move. Returns `None` when a number is not finite or the margin is invalid: no check can then decide
+    /// the move.
     pub(crate) fn of(way: &Move) -> Option<Path> {
         if !(way.margin_mm >= 0.0 && way.margin_mm <= f64::MAX) {
             return None;
@@ -65,7 +65,7 @@ impl Path {
         reach(self.from) + reach(self.displacement)
     }
 
-    /// Returns true when the displacement was computed from both ends without rounding.
+    /// Returns true when the displacement is the exact difference of both ends, without rounding.
     #[inline]
     pub(crate) fn is_exact(&self) -> bool {
         is_exact_sum(self.to, negate(self.from))

@@ -1,10 +1,10 @@
 //! Permissions of pairs: what a mover may do to each element, and where a move first violates a permission.
 //!
-//! For a pair of mover and element, coming within a margin is forbidden, or touching is allowed, or the pair is
-//! ignored. A question takes one margin for all elements, so elements with equal permissions are checked together, and
-//! the earliest violation counts. Bodies that may touch may also press into each other, up to a depth. To check that,
-//! this depth is taken off the faces of the mover; the contacts that are then reported are exactly those that go
-//! deeper.
+//! For a pair of mover and element, coming within a margin is forbidden, or touching is allowed, or the check ignores
+//! the pair. A question takes one margin for all elements, so this module asks once for all elements with equal
+//! permissions, and the earliest violation counts. Bodies that may touch may also press into each other, up to a depth.
+//! To check that, the caller takes this depth off the faces of the mover; the remaining contacts are exactly those that
+//! go deeper.
 
 use std::borrow::Cow;
 
@@ -14,16 +14,16 @@ use super::mover::Mover;
 use super::pose::Pose;
 use super::shape::{Flaw, Shape};
 
-/// Least half extent of a piece of a mover, mm: taking off the depth of [`Permission::MayTouch`] leaves a thin piece this much.
+/// Least half extent of a piece of a mover, mm, that remains when [`Shape::less`] takes a depth off a thin piece.
 const CORE_MM: f64 = 1e-3;
 
-/// How far beyond its margin the distance of a forbidden pair is still measured, mm.
+/// Distance beyond the margin up to which the distance of a forbidden pair is still measured, mm.
 const MEASURED_BEYOND_MM: f64 = 1.0;
 
 /// What a mover may do to an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Permission {
-    /// The mover must stay farther away than the margin.
+    /// The distance must stay above the margin.
     Forbidden {
         /// Distance that must be exceeded, mm.
         margin_mm: f64,
@@ -66,16 +66,16 @@ pub struct Forbidden {
     pub contact: Contact,
     /// Least distance of mover and element over the whole move, mm; at most 1 mm above the margin.
     pub distance_mm: f64,
-    /// Margin that is violated, mm; 0 for a pair that may touch.
+    /// Violated margin, mm; 0 for a pair that may touch.
     pub margin_mm: f64,
 }
 
 impl Model {
     /// Returns the first violation of a permission on a move; `None` is proof that the move is allowed.
     ///
-    /// An element that `permissions` omits must not be touched. `passing` gets a depth (mm)
-    /// and returns the move with the mover thinned by it ([`Shape::less`]). The model calls it once for each distinct
-    /// depth.
+    /// An element that `permissions` omits must not be touched. `passing` gets a depth (mm) and returns the move with a
+    /// mover thinned by this depth ([`Shape::less`]). The model calls it once for each distinct permission, even when
+    /// the depth is the same.
     ///
     /// # Errors
     /// Fails as `passing` does.
@@ -104,7 +104,7 @@ impl Model {
         Ok(first)
     }
 
-    /// Returns the permissions with those of the omitted elements added: they must not be touched.
+    /// Returns the permissions, with [`Permission::Forbidden`] and margin 0 added for each element that they omit.
     fn all_pairs(&self, permissions: &[(ElementKey, Permission)]) -> Vec<(ElementKey, Permission)> {
         let mut pairs = permissions.to_vec();
         pairs.sort_by_key(|pair| pair.0);
@@ -144,7 +144,8 @@ impl Model {
 }
 
 impl Shape {
-    /// Returns the shape with `depth_mm` taken off every face of every block and cylinder; meshes stay whole.
+    /// Returns the shape with `depth_mm` taken off every face of every block and cylinder, down to a thin core; meshes
+    /// stay whole.
     pub fn less(&self, depth_mm: f64) -> Shape {
         let less = |half: f64| (half - depth_mm).max(CORE_MM.min(half));
         match self {

@@ -2,15 +2,15 @@
 //!
 //! A block and a cylinder are one piece each, a compound has the pieces of its parts, and a mesh has one piece per
 //! triangle. The distance functions need only the support of a piece: how far it reaches along a direction, and a point
-//! of it that lies as far.
+//! of it that reaches as far.
 
 use super::pose::{Frame, Pose};
 use super::prism::Prism;
 use super::shape::Shape;
 use super::vector::{Vec3, add, along, cross, dot, length, negate, reach, scale, sub};
 
-/// Relative error bound of all computation that leads from the numbers of a scene to one evaluated plane, in units of
-/// the sum of all magnitudes that entered.
+/// Relative error bound of the whole computation from the numbers of a scene to one evaluated plane, in units of the
+/// sum of all magnitudes that entered.
 ///
 /// The count is generous: a rotation matrix from a quaternion takes 8 roundings; two nested compounds, a turn and a
 /// support sum take fewer than 40 more. 96 roundings of 2^-53 each are twice as many. At 1e6 mm this bound is below
@@ -72,7 +72,7 @@ impl Piece {
         Piece::new(centre, frame.then(&self.frame), form, span)
     }
 
-    /// Returns centre and span of the piece after its parent frame is moved in this way.
+    /// Returns centre and span of the piece after its parent frame is turned by `frame` and placed at `position`.
     #[inline]
     pub(crate) fn place(&self, frame: &Frame, position: Vec3) -> (Vec3, f64) {
         let turned = if frame.is_identity() {
@@ -188,7 +188,7 @@ pub(crate) fn each_piece(shape: &Shape, mut show: impl FnMut(Piece)) {
     descend(shape, &Frame::IDENTITY, [0.0; 3], 0.0, &mut show);
 }
 
-/// Visits a shape and its parts. `span` is what the positions of the parents add to [`Piece::span`].
+/// Visits a shape and its parts. `span` is the contribution of the parents' positions to [`Piece::span`].
 fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut impl FnMut(Piece)) {
     match shape {
         Shape::Block { half } => {
@@ -232,7 +232,7 @@ fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut imp
     }
 }
 
-/// Places a triangle; its centre is the middle of its bounding box, so the corners stay near it.
+/// Places a triangle; its centre is the middle of its bounding box, so that the corners lie close to it.
 fn triangle_piece(corners: [Vec3; 3], frame: &Frame, origin: Vec3, span: f64) -> Piece {
     let placed = corners.map(|corner| add(frame.apply(corner), origin));
     let mut middle = [0.0; 3];

@@ -96,7 +96,7 @@ impl Frame {
         self.is_vertical() && self.x[2] == 0.0 && self.y[2] == 0.0
     }
 
-    /// Returns the rotation as a turn about z, if it is one.
+    /// Returns the rotation as a turn about z; `None` when it is not one.
     #[inline]
     pub(crate) fn yaw(&self) -> Option<Yaw> {
         let [cos, sin, rise] = self.x;
@@ -180,12 +180,13 @@ pub(crate) struct RoughYaw {
     pub(crate) sin: f32,
 }
 
-/// How far the squared length of a quaternion may be from 1 for [`RoughYaw`] to skip the division: a sixtieth of what
-/// rounding to single precision loses.
+/// Deviation from 1 of the squared length of a quaternion up to which [`RoughYaw`] skips the division: a sixtieth of
+/// the loss by rounding to single precision.
 const NEARLY_UNIT: f64 = 1e-9;
 
 impl RoughYaw {
-    /// Converts the quaternion `[w, 0, 0, z]`. Nearly all have length 1 and need no division, which saves time.
+    /// Converts the quaternion `[w, 0, 0, z]`. Nearly all quaternions have length 1 and need no division, which saves
+    /// time.
     #[inline(always)]
     pub(crate) fn of(w: f64, z: f64) -> RoughYaw {
         let (ww, zz) = (w * w, z * z);
@@ -210,7 +211,7 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    /// Returns the turn; `None` when both orientations agree (also as `q` and `-q`), so that the move is a translation.
+    /// Returns the turn; `None` when both orientations agree (also as `q` and `-q`): the move is then a translation.
     ///
     /// Orientations agree when the angle between them is below 1e-15 rad, that is, when the quaternions are
     /// proportional but for rounding.

@@ -1,12 +1,12 @@
 //! Upright blocks and cylinders: each is an interval in z times a rectangle or a disc. [`meeting`](super::meeting)
-//! computes when two of them meet on a path, [`touch`](super::touch) where they touch.
+//! computes when two of them meet on a path, [`touch`](super::touch) computes where they touch.
 
 use super::piece::{Form, NOISE, Piece, is_exact_sum};
 use super::pose::{Frame, Pose, Yaw};
 use super::shape::Shape;
 use super::vector::{Vec3, add, reach};
 
-/// An upright block or cylinder, reduced to what closed forms need.
+/// An upright block or cylinder, reduced to the numbers that closed forms need.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prism {
     pub(crate) centre: Vec3,
@@ -34,7 +34,8 @@ impl Prism {
         }
     }
 
-    /// Converts a single block or cylinder; returns `None` unless it is upright at `pose`.
+    /// Converts a single block or cylinder; returns `None` for any other shape, and for one that is not upright at
+    /// `pose`.
     #[inline]
     pub(crate) fn standing(shape: &Shape, pose: &Pose) -> Option<Prism> {
         let (half, radius, span) = match shape {
@@ -102,7 +103,7 @@ impl Prism {
         }
     }
 
-    /// Returns this prism as a general piece; the axes of its footprint may be exchanged by quarter turns.
+    /// Returns this prism as a general piece; quarter turns may have exchanged the axes of its footprint.
     pub(crate) fn piece(&self) -> Piece {
         let [x, y] = self.axis;
         let frame = Frame {
@@ -127,7 +128,7 @@ impl Prism {
         }
     }
 
-    /// Returns true when the prism stands exactly where the numbers of the scene put it, without rounding.
+    /// Returns true when the coordinates of the prism are exactly the numbers of the scene, without rounding.
     pub(crate) fn is_exact(&self) -> bool {
         let [a, b, c] = self.half;
         let own = if self.radius > 0.0 {
@@ -183,7 +184,7 @@ fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
     }
 }
 
-/// Exchanges the axes of a rectangle by quarter turns so that the first one lies nearest to x.
+/// Exchanges the axes of a rectangle by quarter turns so that the first axis lies nearest to x.
 #[inline]
 fn beside_x([a, b, c]: Vec3, x: [f64; 2]) -> (Vec3, [f64; 2]) {
     let (half, x) = if x[0].abs() >= x[1].abs() {

@@ -28,7 +28,7 @@ impl Model {
 
     /// Returns the least distance over the move; `None` when it exceeds `range_mm`.
     ///
-    /// For a move or a range that cannot be decided, the distance is 0 and the element [`ElementKey::UNDECIDABLE`].
+    /// For an undecidable move or range, the distance is 0 and the element is [`ElementKey::UNDECIDABLE`].
     pub fn clearance(&self, mover: &impl Moving, way: &Move, range_mm: f64) -> Option<Clearance> {
         let nothing = |nearest| Clearance {
             distance_mm: 0.0,
@@ -72,7 +72,7 @@ impl Model {
         self.pieces.at(piece).owner
     }
 
-    /// Returns a piece of an element that encloses the mover, or is enclosed by it, while their surfaces need not
+    /// Returns a piece of an element that encloses the mover, or that the mover encloses; their surfaces need not
     /// touch.
     #[inline]
     fn enclosed(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {

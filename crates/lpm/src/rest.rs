@@ -1,9 +1,9 @@
 //! A body at rest: checks a pose, as in the paper.
 //!
-//! Nothing moves, so there is no path and no order in time: boxes of pieces are compared first, then heights and
+//! Nothing moves, so there is no path and no order in time: the check compares boxes of pieces first, then heights and
 //! footprints. Two upright pieces are clear when their heights or their footprints are farther apart than the slack of
 //! [`meeting`](super::meeting), which gives the argument. Tilted bodies, bodies that enclose a space, and moves with a
-//! margin are left to the check of a path of length zero.
+//! margin go to the check of a path of length zero.
 
 use super::answer::{ElementKey, Move};
 use super::meeting::slack;
@@ -18,13 +18,14 @@ use super::stationary::Stored;
 use super::touch::lie_apart;
 use super::vector::{Vec3, add, reach, sub};
 
-/// A question with a shortcut for a body at rest. Each answer is built directly as a return value: extracting it from
-/// another value would cost a slow copy.
+/// A question with a shortcut for a body at rest. Each implementation builds its answer directly as the return value:
+/// extracting it from another value would cost a slow copy.
 pub(crate) trait Question {
     type Answer;
-    /// Answer when nothing is met.
+    /// Answer when the body meets nothing.
     const CLEAR: Self::Answer;
-    /// Returns the answer when an element may be met; `apart` runs from the centre of its piece to that of the mover.
+    /// Returns the answer when the body may meet an element; `apart` runs from the centre of its piece to that of the
+    /// mover.
     fn met(owner: ElementKey, element: &Prism, mover: &Prism, apart: Vec3) -> Self::Answer;
     /// Returns the general answer, for any body and any path.
     fn on_the_way(model: &Model, body: &Mover, way: &Move) -> Self::Answer;
@@ -53,7 +54,7 @@ impl Model {
     }
 }
 
-/// What the shortcut finds about one stationary piece.
+/// Verdict of the shortcut on one stationary piece.
 enum Judged<A> {
     Clear,
     Met(A),
@@ -69,8 +70,8 @@ struct Rest<'a> {
 }
 
 impl Rest<'_> {
-    /// Answers for a body turned by the quaternion `[w, 0, 0, z]`; `None`: unturned. The compiler makes a version for
-    /// each case, so an unturned body costs no rotation.
+    /// Answers for a body turned by the quaternion `[w, 0, 0, z]`, or not turned (`None`). The compiler makes a version
+    /// for each case, so that an unturned body costs no rotation.
     #[inline(always)]
     fn among<Q: Question>(&self, turn: Option<(f64, f64)>) -> Q::Answer {
         let yaw = turn.map(|(w, z)| Yaw::of(w, z));
@@ -116,7 +117,7 @@ impl Rest<'_> {
         }
     }
 
-    /// Compares those pieces of a group whose boxes meet the box of a stationary piece with this piece.
+    /// Compares a stationary piece with those pieces of a group that `places` marks because their boxes meet its box.
     #[inline(always)]
     fn judged<Q: Question>(
         &self,

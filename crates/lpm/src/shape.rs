@@ -35,7 +35,7 @@ pub enum Shape {
 }
 
 /// Triangles over shared vertices. A closed surface is solid; an open one consists of its triangles only. Thin
-/// triangles, and triangles that are only a segment or a point, are legal.
+/// triangles are legal, even those that degenerate to a segment or a point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     /// Vertices, mm.
@@ -103,7 +103,7 @@ impl Shape {
     #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
         match self {
-            // Decides the usual case first, without building strings for paths.
+            // Decides the common case first, without building strings for paths.
             Shape::Block { half: [a, b, c] } if is_size(a) & is_size(b) & is_size(c) => Ok(()),
             Shape::Cylinder { radius, height } if is_size(radius) & is_size(height) => Ok(()),
             _ => check_shape(self, "", 0),
@@ -113,7 +113,7 @@ impl Shape {
 
 impl Pose {
     /// Checks that the position is within 1e6 mm, and that the squared length of the quaternion is above 1e-200 and at
-    /// most 1e200. [`Pose::rescaled`] brings any other finite non-zero quaternion into this range.
+    /// most 1e200. [`Pose::rescaled`] scales any other finite non-zero quaternion into this range.
     ///
     /// # Errors
     /// Fails with [`Flaw::Coordinate`] or [`Flaw::Rotation`].
@@ -135,7 +135,7 @@ impl Pose {
             return self;
         }
         let largest = self.rotation.map(f64::abs).into_iter().fold(0.0, f64::max);
-        // The exponent in IEEE 754 has a bias of 1023: this factor brings the largest member to 1 to 4 (a subnormal one
+        // The exponent in IEEE 754 has a bias of 1023: this factor scales the largest member to 1 to 4 (a subnormal one
         // to at least 2^-51).
         let exponent = (2046 - (largest.to_bits() >> 52).min(2046)).max(1);
         let scale = f64::from_bits(exponent << 52);
@@ -221,8 +221,8 @@ fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
     Ok(())
 }
 
-/// Returns true when a quaternion of this squared length is a usable rotation. Outside the range it has lost digits to
-/// underflow or overflow; NaN and infinity lie outside as well.
+/// Returns true when a quaternion of this squared length is a usable rotation. Outside the range the squared length has
+/// lost digits to underflow or overflow; NaN and infinity lie outside as well.
 #[inline(always)]
 pub(crate) fn is_turn(squared: f64) -> bool {
     is_between(squared, [1e-200, 1e200])
@@ -235,7 +235,7 @@ fn is_size(found: &f64) -> bool {
 
 /// Returns true when a number lies above the first bound, which is not negative, and is at most the second. One
 /// comparison decides: the bit patterns of non-negative numbers sort like the numbers, and those of negative numbers
-/// and NaN come after all others.
+/// and NaN sort after all others.
 #[inline(always)]
 fn is_between(found: f64, [above, most]: [f64; 2]) -> bool {
     let first = above.to_bits() + 1;

@@ -16,7 +16,7 @@ use super::closed::{Corners, Surface, closed_surfaces};
 use super::pose::Frame;
 use super::vector::{Vec3, add, cross, dot, reach, sub};
 
-/// Directions of rays, chosen so that no machine part is likely to share a symmetry with them.
+/// Directions of rays, chosen so that they are unlikely to lie in a symmetry of any machine part.
 const RAYS: [Vec3; 6] = [
     [0.842_713, 0.311_907, 0.438_851],
     [-0.237_119, 0.915_203, 0.325_741],
@@ -162,7 +162,7 @@ impl Shell {
         (0..3).all(|axis| point[axis] >= self.low[axis] && point[axis] <= self.high[axis])
     }
 
-    /// Returns whether `point` is inside the shell; `None` when no ray decides.
+    /// Returns whether `point` is inside the shell; `None` when no ray gives a decision.
     fn is_inside(&self, point: Vec3) -> Option<bool> {
         let mut crossings = RAYS.iter().filter_map(|ray| self.crossings(point, *ray));
         let first = crossings.next()?;

@@ -1,4 +1,4 @@
-//! The pieces of the stationary elements in one block of memory, reduced to what questions read.
+//! The pieces of the stationary elements in one block of memory, reduced to the numbers that questions read.
 //!
 //! An upright piece is stored as its [`Prism`], which describes it completely. A tilted piece or a triangle needs a
 //! whole [`Piece`], which is stored separately.
@@ -28,7 +28,7 @@ pub(crate) struct Stationary {
 pub(crate) enum Stored {
     /// Upright piece: closed forms apply.
     Upright(Prism),
-    /// Tilted piece or triangle: index of the whole piece.
+    /// Tilted piece or triangle: index of the general piece.
     Askew(u32),
 }
 
@@ -106,7 +106,7 @@ impl Pieces {
         &self.pieces[number as usize]
     }
 
-    /// Returns a piece in its whole form, for searches.
+    /// Returns a piece in its general form, for searches.
     pub(crate) fn piece(&self, number: u32) -> Piece {
         match &self.at(number).form {
             Stored::Upright(prism) => prism.piece(),

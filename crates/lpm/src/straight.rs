@@ -1,16 +1,17 @@
 //! Straight moves: first contact and least distance of two convex pieces, for the whole path at once.
 //!
 //! While one convex piece is translated past another, their distance is a convex function of the path. Each separating
-//! plane that is found gives a tangent below this function, because the separation by a fixed plane is linear along the
-//! move. So Newton's method from the left never oversteps the first contact ([`first_within`]), and the crossing of a
-//! falling and a rising tangent is a proven lower bound of the least distance ([`least`]). No step has a fixed size: a
-//! move of ten metres over a foil costs the same as a short one.
+//! plane that the search finds gives a tangent below this function, because the separation by a fixed plane is linear
+//! along the move. So Newton's method from the left never oversteps the first contact ([`first_within`]), and the
+//! crossing of a falling and a rising tangent is a proven lower bound of the least distance ([`least`]). No step has a
+//! fixed size: a move of ten metres over a foil costs the same as a short one.
 
 use super::distance::{Gap, RESOLUTION_MM, gap};
 use super::piece::{NOISE, Piece};
 use super::vector::{Vec3, dot, reach, scale};
 
-/// Most tangents per pair. Newton's method needs 3 to 8; a grazing pass, which has a double root, up to 30.
+/// Maximum number of tangents per pair. Newton's method needs 3 to 8; a grazing pass, which has a double root, up to
+/// 30.
 const MOST_TANGENTS: usize = 128;
 
 /// First contact of a pair within the margin.
@@ -22,7 +23,7 @@ pub(crate) struct Hit {
 }
 
 impl Hit {
-    /// Returns a contact at the start of the move, for one body that lies inside the other.
+    /// Returns a contact at the start of the move for two bodies, one of which lies inside the other.
     pub(crate) fn inside(point: Vec3) -> Hit {
         let gap = Gap {
             lower: 0.0,
@@ -48,15 +49,15 @@ impl Slope {
         }
     }
 
-    /// Returns by how much the separation by this plane shrinks along the whole move, mm.
+    /// Returns the decrease of the separation by this plane over the whole move, mm.
     fn closing(&self, gap: &Gap) -> f64 {
         -dot(gap.normal, self.displacement)
     }
 }
 
-/// Returns the first fraction `t` up to `until` at which the distance is within `margin` (mm); `None` is proof that
-/// there is none. A case that cannot be decided counts as a hit. The caller has proven that there is none before
-/// `start`.
+/// Returns the first fraction `t` from `start` to `until` at which the distance is within `margin` (mm); `None` is
+/// proof that there is none. An undecidable case counts as a hit. The caller must have proven that there is no contact
+/// before `start`.
 pub(crate) fn first_within(
     element: &Piece,
     mover: &Piece,
@@ -76,8 +77,8 @@ pub(crate) fn first_within(
             return Some(Hit { t, gap });
         }
         let closing = slope.closing(&gap) + slope.slack;
-        // When the separation grows, or shrinks too slowly to reach the margin in time, this plane proves the move
-        // clear to its end.
+        // When the separation grows, or shrinks too slowly to reach the margin before `until`, this plane proves the
+        // rest of the move clear.
         let next = t + excess / closing * (1.0 - 4.0 * f64::EPSILON);
         if closing <= 0.0 || next > until {
             return None;

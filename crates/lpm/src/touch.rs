@@ -19,7 +19,7 @@ struct Side {
     at: [f64; 2],
 }
 
-/// Returns true only as proof that the footprints of two pieces, whose centres lie `apart`, are farther from each other
+/// Returns true only when the footprints of two pieces, whose centres lie `apart`, are provably farther from each other
 /// than `by` (mm, above 0, rounding included). Compares squares and combines conditions without branches, because a
 /// mispredicted branch costs more.
 #[inline(always)]
@@ -80,7 +80,8 @@ fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     rounded(element, mover, framed, apart)
 }
 
-/// Returns the side for rectangles with common axes, discs, or one of each; `framed` is the piece whose axes are used.
+/// Returns the side for rectangles with common axes, discs, or one of each; `framed` is the piece whose axes the
+/// computation uses.
 #[inline(always)]
 fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side {
     let p = into(framed, [apart[0], apart[1]]);
@@ -110,7 +111,7 @@ fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side 
     }
 }
 
-/// Returns the side for two rectangles turned against each other; each of them has two sides that may be touched.
+/// Returns the side for two rectangles turned against each other; on each of them the other may touch one of two sides.
 #[inline(always)]
 fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     let seen = Askew::of(element, mover, apart);
@@ -130,13 +131,15 @@ fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
 
 /// Two rectangles turned against each other, described along the axes of both.
 struct Askew {
-    /// Vector from the element to the mover, along the axes of the element and along those of the mover, mm.
+    /// Vector from the element to the mover along the axes of the element, mm; the next field is the same vector along
+    /// those of the mover.
     in_element: [f64; 2],
     in_mover: [f64; 2],
-    /// First axis of the mover, along the axes of the element; `cos` and `sin` are its components.
+    /// First axis of the mover, along the axes of the element: `cos` is its first component, `sin` its second.
     cos: f64,
     sin: f64,
-    /// How far the mover lies beyond the sides of the element, and the element beyond the sides of the mover, mm.
+    /// Distance of the mover beyond the sides of the element, mm; the next field is that of the element beyond the
+    /// sides of the mover.
     over_element: [f64; 2],
     over_mover: [f64; 2],
 }
@@ -165,7 +168,8 @@ impl Askew {
         }
     }
 
-    /// Returns depth, normal and point, along the axes of the element, when a corner of the mover touches its side.
+    /// Returns depth, normal and point, along the axes of the element, when a corner of the mover touches a side of the
+    /// element.
     #[inline(always)]
     fn on_a_side(&self, element: &Prism, mover: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [a, b, _] = element.half;

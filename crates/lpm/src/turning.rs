@@ -1,7 +1,7 @@
 //! Turning moves: advances by steps that a second-order bound proves clear (conservative advancement).
 //!
-//! Let a mover turn by `theta` about the unit axis `u` during the whole move. Relative to the origin of the mover, a
-//! point `y` of it obeys after a further fraction `h` `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`,
+//! Let a mover turn by `theta` about the unit axis `u` during the whole move. For a point `y` of the mover, relative to
+//! its origin, a further fraction `h` of the move gives `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`,
 //! where `rho` is the distance of `y` from the axis. The least value of the first two terms over the whole piece is
 //! again a value of the support function, in the direction `n + h theta (n x u)`. So one plane clears a whole stretch
 //! of the move, and on a grazing pass a step is as long as the square root of the gap, not as the gap itself.
@@ -16,7 +16,7 @@ use super::pose::Turn;
 use super::straight::Hit;
 use super::vector::{Vec3, along, cross, dot, length, negate, scale, sub};
 
-/// Most planes per pair. Because of [`band_mm`], 20,000 are enough for any turn.
+/// Maximum number of planes per pair. Because of [`band_mm`], 20,000 are enough for any turn.
 const MOST_PLANES: usize = 40_000;
 /// Rounds of chord and bisection per stretch; after each round the lower end is still proven.
 const STRETCH_ROUNDS: usize = 8;
@@ -25,7 +25,7 @@ const LEAST_RESOLUTION_MM: f64 = 2e-4;
 
 /// Spacing of the first samples in the search for a least distance, as a fraction of the move.
 const SAMPLE: f64 = 1.0 / 32.0;
-/// Rounds of ternary search in a valley two samples wide; each takes a third off, which leaves 1e-8 of the move.
+/// Rounds of ternary search in a valley two samples wide; each round removes a third, which leaves 1e-8 of the move.
 const VALLEY_ROUNDS: usize = 40;
 
 /// Returns the distance beyond the margin that counts as contact, mm; with it, no step of a grazing pass is shorter
@@ -81,8 +81,8 @@ impl Turning<'_> {
     /// most [`LEAST_RESOLUTION_MM`] or the band, whichever is larger.
     ///
     /// The search starts from a good guess and proves, in one sweep over the move, that no distance is lower than the
-    /// guess by the resolution. A distance lower than the guess by more than half the resolution becomes the new guess,
-    /// so every plane has the other half left for its step.
+    /// guess by more than the resolution. A distance lower than the guess by more than half the resolution becomes the
+    /// new guess, so that every plane has the other half left for its step.
     pub(crate) fn least(&self, cutoff: f64) -> Option<(f64, f64)> {
         let rho = self.rho();
         let resolution = LEAST_RESOLUTION_MM.max(band_mm(self.turn, rho));
@@ -111,7 +111,7 @@ impl Turning<'_> {
             t += stretch;
             hint = Some(gap.normal);
         }
-        // No planes are left: the true least distance may be anywhere below the values seen.
+        // The planes are used up: the true least distance may be anywhere below the values seen.
         Some((t, 0.0))
     }
 
@@ -119,8 +119,8 @@ impl Turning<'_> {
         (t, self.gap_at(t, None).1.lower.max(0.0))
     }
 
-    /// Returns a guess of `t` and the least distance: the lowest of evenly spaced samples, after a descent into its
-    /// valley.
+    /// Returns a guess of `t` and the least distance: the lowest of evenly spaced samples, improved by a descent into
+    /// its valley.
     fn guess(&self) -> (f64, f64) {
         let steps = (1.0 / SAMPLE) as usize;
         let samples = (0..=steps).map(|step| self.lower_at(step as f64 * SAMPLE));
@@ -130,7 +130,7 @@ impl Turning<'_> {
         self.descended(best.0 - SAMPLE, best.0 + SAMPLE, best)
     }
 
-    /// Descends into a valley by ternary search; without derivatives, because the valley may have a sharp bottom.
+    /// Descends into a valley by ternary search, without derivatives, because the valley may have a sharp bottom.
     fn descended(&self, from: f64, to: f64, start: (f64, f64)) -> (f64, f64) {
         let (mut from, mut to, mut best) = (from.max(0.0), to.min(1.0), start);
         for _ in 0..VALLEY_ROUNDS {
@@ -187,7 +187,7 @@ struct Plane<'a> {
     /// Separation of the plane from the origin of the mover at `h = 0`, minus the rounding bound, mm.
     base: f64,
     arm: Vec3,
-    /// Change of this separation per unit of `h`, mm; `swing` is the change of the direction of support.
+    /// Change of this separation per unit of `h`, mm; the next field is the change of the direction of support.
     rate: f64,
     swing: Vec3,
     bend: f64,

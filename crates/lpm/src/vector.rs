@@ -55,7 +55,8 @@ pub(crate) fn reach(a: Vec3) -> f64 {
 
 /// Returns the unit vector along `a`; `None` when `a` is too short to have a direction, or not finite.
 ///
-/// The vector is scaled by its largest member first, so vectors as short as 1e-150 mm keep all digits of direction.
+/// The function first scales the vector by its largest member, so that vectors as short as 1e-150 mm keep all digits of
+/// direction.
 #[inline]
 pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     let largest = a[0].abs().max(a[1].abs()).max(a[2].abs());

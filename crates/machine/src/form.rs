@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::fmt;
 use utoipa::ToSchema;
 
-/// Change of the value of one key.
+/// Change of the value of one key between two versions of a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct KeyChange {
     /// Path of the key, for example `limits.operate_voltage_v.high`.
@@ -38,7 +38,7 @@ impl fmt::Display for KeyChange {
     }
 }
 
-/// Shape of a value.
+/// Shape that the value of a key must have.
 #[derive(Debug, Clone, Copy)]
 pub enum Form {
     /// Text, not empty.
@@ -121,7 +121,7 @@ pub struct Key {
     pub optional: bool,
     /// Shape of its value.
     pub form: Form,
-    /// Part of the program that reads the key.
+    /// Name of the part of the program that reads the key.
     pub reader: &'static str,
     /// Meaning of the key, for the schema and the tables.
     pub meaning: &'static str,

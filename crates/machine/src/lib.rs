@@ -1,7 +1,7 @@
-//! The machine without its wires: what the rig is, what it may do, and what it does next.
+//! The machine without its lines, files and screens: what the rig is, what it may do, and what it does next.
 //!
 //! Everything here is a pure function of state, time, inputs and orders: no clock, no file, no socket, no log. The
-//! crate `app` reads the inputs, calls [`station`] and carries out the commands that it returns.
+//! crate `cycle` reads the inputs, calls [`station`] and carries out the commands that it returns.
 //!
 //! Modules in reading order:
 //!

@@ -1,4 +1,4 @@
-//! The state that pages show, as plain serialisable types, filled by cycle and recorder.
+//! The state that pages show, as plain serialisable types; the cycle and the recorder of the history fill them.
 
 mod machine;
 mod mimic;
@@ -28,9 +28,9 @@ pub struct View {
     pub at_us: i64,
     /// True when the rig is simulated.
     pub simulated: bool,
-    /// The current lot, or else the last one; empty before the first.
+    /// Name of the current lot, or else of the last one; empty before the first.
     pub lot: String,
-    /// True while a lot is open; a stopped lot continues with the next start.
+    /// True while a lot is open; the next start continues a stopped lot.
     pub under_way: bool,
     /// Recipe of the lot.
     pub recipe: String,
@@ -54,7 +54,7 @@ pub struct View {
     pub bins: BTreeMap<String, u64>,
     /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<String, u64>,
-    /// Parts per hour of rig time since the lot began.
+    /// Parts per hour of rig time since the lot began; null before the first part.
     pub parts_per_hour: Option<f64>,
     /// The last judged part.
     pub last: Option<LastPart>,
@@ -70,7 +70,7 @@ pub struct View {
     pub machine: Machine,
     /// End of the last run of a lot; null before the first.
     pub last_run: Option<RunEnd>,
-    /// What the computer grants the program, and how late it wakes the cycle.
+    /// Rights that the operating system grants to the program, and how late the computer wakes the cycle.
     pub host: HostView,
 }
 
@@ -108,7 +108,7 @@ pub struct LatenessView {
     pub buckets: Vec<Bucket>,
 }
 
-/// Number of waits later than the edge of the previous bucket, up to this one's.
+/// Number of waits whose lateness lies above the edge of the previous bucket, up to the edge of this one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
 pub struct Bucket {
     /// Edge, ms.
@@ -130,7 +130,7 @@ pub struct RunEnd {
     pub cause_text: Option<String>,
 }
 
-/// A part in the list of the last ones.
+/// A part in the list of those judged last.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RecentPart {
     /// Number in the lot.
@@ -194,7 +194,7 @@ pub struct AlarmLine {
 pub struct LineView {
     /// Name in the wiring.
     pub name: String,
-    /// Transactions that found no port.
+    /// Transactions that failed because the port was lost.
     pub ports_lost: u64,
     /// Modules in order of address.
     pub modules: Vec<ModuleView>,
@@ -219,6 +219,6 @@ pub struct ModuleView {
     pub other_errors: u64,
     /// Replies in which the module refused the command.
     pub refusals: u64,
-    /// Times that the reset status was set.
+    /// Number of times that the module reported a restart.
     pub resets: u64,
 }

@@ -1,4 +1,4 @@
-//! Types of answers: each writes its media type and its schema into the OpenAPI document.
+//! Types of answers: each describes its media type and its schema in the OpenAPI document.
 
 use super::api::Operation;
 use super::error::ApiError;
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::marker::PhantomData;
 use utoipa::ToSchema;
 
-/// An answer that writes itself into the document.
+/// An answer that describes itself in the OpenAPI document.
 pub(super) trait Answer {
     fn describe(operation: &mut Operation);
 }

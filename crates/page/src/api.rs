@@ -40,8 +40,8 @@ pub(super) struct Operation {
 }
 
 impl Operation {
-    /// Keeps the schema of `T` and those that it refers to. Returns a reference to it; for a list, an optional value or
-    /// any JSON the schema itself.
+    /// Keeps the schema of `T` and the schemas that it refers to. Returns a reference to the schema of `T`; for a list,
+    /// an optional value or any JSON, returns the schema itself.
     pub fn schema_of<T: ToSchema>(&mut self) -> Value {
         let mut named = Vec::new();
         T::schemas(&mut named);
@@ -68,11 +68,11 @@ impl Operation {
 
 /// Part of a request that a handler takes.
 pub(super) trait Input {
-    /// Writes this part into the document.
+    /// Describes this part in the OpenAPI document.
     fn describe(_operation: &mut Operation) {}
 }
 
-/// A handler whose types write themselves into the document.
+/// A handler whose types describe it in the OpenAPI document.
 pub(super) trait Endpoint<T> {
     fn operation() -> Operation;
 }

@@ -1,8 +1,9 @@
-//! Approval of a recipe by a second engineer, where `[recipes] approval` of `rig.toml` wants it.
+//! Approval of a recipe by a second engineer, where `[recipes] approval` of `rig.toml` requires it.
 //!
-//! Two engineers answer for a text: one who saved it and another who approved it, or two who approved it when a file was
-//! edited by hand. Their signatures are lines of the audit of orders with the hash of the text, so a text that changes
-//! in any way has none. Whether a lot may use a recipe is decided when it starts (`admission.rs` of crate `app`).
+//! A text needs the signatures of two engineers: one who saved it and another who approved it, or two who approved it
+//! when a file was edited by hand. Signatures are lines of the audit of orders with the hash of the text, so a text
+//! that changes in any way has none. Whether a lot may use a recipe is decided when it starts (`admission.rs` of crate
+//! `app`).
 
 use super::access::{Login, Register, Role, access_path, audited, note};
 use super::asked::{Author, Body};
@@ -32,17 +33,17 @@ pub(super) struct Approve {
     hash: String,
 }
 
-/// Engineers who answer for a revision.
+/// Approval of a revision: the engineers who saved or approved it.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ApprovalState {
-    /// True when enough engineers answer for it, so that a lot may use it.
+    /// True when a lot may use the revision, because enough engineers saved or approved it.
     approved: bool,
     /// Engineers who saved or approved it, in order of time.
     signatures: Vec<Signature>,
 }
 
 impl ApprovalState {
-    /// Returns the approval of a revision; `None` in a plant that wants none.
+    /// Returns the approval of a revision; `None` in a plant that requires none.
     pub fn read(wanted: Approval, db: &Path, of: &Revision) -> Result<Option<Self>, ApiError> {
         match wanted {
             Approval::None => return Ok(None),
@@ -79,8 +80,8 @@ pub(super) async fn approve(
 /// Approves the newest revision of `recipe` on the command line; returns its number.
 ///
 /// # Errors
-/// Fails for a wrong password, a person without the role engineer, an engineer who signed the revision already, and when
-/// the revision or the audit of orders cannot be read or written.
+/// Fails for a wrong password, a person without the role engineer, an engineer who signed the revision already, and
+/// when the revision or the audit of orders cannot be read or written.
 pub fn approve_with_password(
     folder: &Folder,
     db: &Path,

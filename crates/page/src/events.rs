@@ -6,8 +6,8 @@
 //! | `beat` | `{"alive":true}` | each second; `false` after the controller has ended |
 //!
 //! A browser that receives nothing for three seconds, or `"alive":false`, has old values and must show them as such. A
-//! slow browser skips views and never gets an older one after a newer one. After the end of a stream a browser waits 1 s
-//! before it connects again (`retry`). The stream ends with the program.
+//! slow browser skips views and never gets an older one after a newer one. After the end of a stream a browser waits 1
+//! s before it connects again (`retry`). The stream ends with the program.
 
 use super::answers::{As, Events};
 use super::end_of_program;
@@ -44,8 +44,8 @@ pub(super) async fn events(State(app): App) -> As<Events> {
     As::new((headers, Body::from_stream(events)).into_response())
 }
 
-/// Writes every due view as an event, once for all streams; writes none while there is no stream. The task ends with its
-/// runtime.
+/// Writes every due view as an event, once for all streams; writes none while there is no stream. The task ends with
+/// its runtime.
 pub(super) fn publish(
     mut views: watch::Receiver<View>,
     events: watch::Sender<Bytes>,
@@ -111,8 +111,8 @@ impl Feed {
     }
 }
 
-/// Resolves when a view is due after the one that was sent at `at`: from [`PACE`] after `at` a view that differs from
-/// `sent`, from [`BEAT`] after `at` any new view. Never resolves after the sender of views has gone.
+/// Waits until a view is due after the view `sent` that was sent at `at`: [`PACE`] after `at` a view that differs from
+/// `sent` is due, [`BEAT`] after `at` any new view. Never resolves after the sender of views has gone.
 async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View) {
     sleep_until(at + PACE).await;
     while views.changed().await.is_ok() {

@@ -60,7 +60,7 @@ fn json_stream<T>(body: axum::body::Body) -> As<Stream<T>> {
     As::new(([(CONTENT_TYPE, "application/json")], body).into_response())
 }
 
-/// Number of parts that a filter leaves.
+/// Number of parts that a filter selects.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct Count {
     parts: u64,

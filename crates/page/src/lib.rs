@@ -1,7 +1,7 @@
 //! The HTTP server: the pages, the view of the machine as JSON and as events, the history, figures for Prometheus.
 //!
-//! - Clients only read the state of the rig. They change it by *orders*, which the station takes or refuses with the reason
-//!   in its next turn.
+//! - Clients only read the state of the rig. They change it by *orders*, which the station takes or refuses with the
+//!   reason in its next turn.
 //! - The view comes through a watch channel, so that the cycle never waits for a client: a slow one skips to the latest
 //!   view, and views do not queue.
 //! - A route refuses with JSON: the status in words, the reason in English and Chinese, its code (`error.rs`).

@@ -3,8 +3,8 @@
 //! The cycle answers in its next turn: it takes the order, or refuses it with the reason in English and Chinese (409).
 //! It answers a motion by hand when the motion has ended. An order that cannot be read gets 400 and leaves no trace.
 //! The server stores no order: when the queue is full it refuses the order. An order that the role of the person
-//! forbids also goes to the cycle, marked as denied, which writes it into the audit. Orders without a login leave no
-//! trace.
+//! forbids also goes to the cycle, marked as denied, and the cycle writes it into the audit. Orders without a login
+//! leave no trace.
 
 use super::access::Role;
 use super::asked::{Author, Body};
@@ -59,8 +59,8 @@ pub(super) async fn order(
     }
 }
 
-/// Returns the weakest role that may give the order: maintainer if it needs knowledge of the machine, engineer to
-/// reopen a complete lot, else operator.
+/// Returns the weakest role that may give the order: maintainer for orders that need knowledge of the machine, engineer
+/// to reopen a complete lot, operator for all others.
 fn needs(word: &str) -> Role {
     match word {
         "mode" | "jog" | "step" | "shelve" | "release_lot" | "replaced" => Role::Maintainer,
@@ -90,7 +90,7 @@ async fn send(app: &AppState, order: Order, by: By) -> Option<Answer> {
     answered.await.ok()
 }
 
-/// Sends a denied order to the audit; it is lost when the controller has ended or its queue is full.
+/// Sends a denied order to the audit; the order is lost when the controller has ended or its queue is full.
 fn note(app: &AppState, order: Order, by: By, why: Message) {
     let request = OrderRequest::denied(order, by, why);
     let _ = app.shared.orders.try_send(request);

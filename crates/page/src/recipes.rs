@@ -1,8 +1,8 @@
 //! `/api/recipes/...`: recipes with their revisions, and the route that saves a new revision.
 //!
-//! Reading needs no login; a revision needs an engineer. The audit of orders gets every try of a logged-in person with its
-//! outcome. The history is opened before the change, so that no revision begins without an audit. `approval.rs` adds the
-//! engineers who answer for a revision.
+//! Reading needs no login; a revision needs an engineer. The audit of orders gets every attempt of a logged-in person
+//! with its outcome. The history is opened before the change, so that no revision is made without an audit.
+//! `approval.rs` adds the engineers who saved or approved a revision.
 
 use super::access::{Person, Role, audited};
 use super::approval::ApprovalState;
@@ -36,7 +36,7 @@ pub(super) struct ListedRecipe {
     hash: Option<String>,
     /// Time at which that revision was saved, microseconds since 1970 UTC.
     saved_at_us: Option<i64>,
-    /// False while the plant wants an approval that this revision lacks.
+    /// False while the plant requires an approval that this revision lacks.
     approved: bool,
     /// Error that keeps the recipe from loading; absent for a good recipe.
     trouble: Option<String>,
@@ -79,14 +79,14 @@ fn listed(
     })
 }
 
-/// A revision with the engineers who answer for it.
+/// A revision with its approval.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ShownRevision {
     #[serde(flatten)]
     revision: Revision,
-    /// Engineers who answer for the revision; null in a plant that wants no approval.
+    /// Approval of the revision; null in a plant that requires none.
     approval: Option<ApprovalState>,
-    /// Prompts of every lot, which `lot.toml` has; those of the recipe are in `fields`.
+    /// Prompts of every lot, from `lot.toml`; the prompts of the recipe are in `fields`.
     prompts_of_lots: Vec<Prompt>,
 }
 

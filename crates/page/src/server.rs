@@ -139,7 +139,7 @@ impl Server {
             .max_buf_size(HEADER)
             .serve_connection(TokioIo::new(stream), service);
         let mut connection = pin!(connection);
-        // An error concerns only this connection, which ends with or without one.
+        // An error concerns only this connection, which ends in any case.
         tokio::select! {
             _ = connection.as_mut() => return,
             () = end_of_program(self.ended.clone()) => connection.as_mut().graceful_shutdown(),
@@ -147,8 +147,8 @@ impl Server {
         let _ = connection.await;
     }
 
-    /// Answers a request. `checked` is the last token of the connection that belongs to no session; it is not looked up
-    /// again.
+    /// Answers a request. `checked` holds the last token of this connection that belongs to no session, so that the
+    /// server does not look it up again.
     async fn answer(
         &self,
         request: Request<Incoming>,

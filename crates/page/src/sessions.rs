@@ -36,8 +36,8 @@ pub struct Sessions(Arc<Inner>);
 #[derive(Debug)]
 struct Inner {
     register: Mutex<Register>,
-    /// Held during a login, which takes 19 MiB and 20 ms of a core: logins run one at a time, and other requests wait
-    /// for one at most.
+    /// Lock held during a login, which takes 19 MiB and 20 ms of a core: logins run one at a time, so that another
+    /// request waits for one login at most.
     login: tokio::sync::Mutex<()>,
     /// Path of the history, which holds the audit of orders.
     history: PathBuf,
@@ -45,8 +45,8 @@ struct Inner {
 }
 
 impl Sessions {
-    /// Opens or creates the file of people that belongs to `history`, whose audit holds changes of people; returns also
-    /// the code that adds the first engineer, while there is no engineer.
+    /// Opens or creates the file of people that lies beside `history`; the audit in `history` records changes of
+    /// people. While there is no engineer, also returns the code that adds the first one.
     ///
     /// # Errors
     /// Fails when the file belongs to another program or to a later version, or SQLite fails.
@@ -104,8 +104,8 @@ impl Sessions {
         blocking(move || work(&mut inner.register())).await
     }
 
-    /// Runs `work` over the file of people, and notes it in the audit of orders as [`audited`] does. While the audit waits
-    /// for a locked history, other requests find their sessions.
+    /// Runs `work` over the file of people, and notes it in the audit of orders as [`audited`] does. While the audit
+    /// waits for a locked history, other requests find their sessions.
     pub(super) async fn audited<T: Send + 'static>(
         &self,
         by: By,
@@ -122,7 +122,7 @@ impl Sessions {
 }
 
 impl Inner {
-    /// Locks the file of people, even after another holder panicked: none leaves data half changed.
+    /// Locks the file of people even after another holder panicked, because no panic leaves data half changed.
     fn register(&self) -> MutexGuard<'_, Register> {
         self.register.lock().unwrap_or_else(PoisonError::into_inner)
     }

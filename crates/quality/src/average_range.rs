@@ -1,5 +1,5 @@
-//! Gauge repeatability and reproducibility by averages and ranges (AIAG MSA): the method for hand calculation,
-//! which many customers still require beside the analysis of variance.
+//! Gauge repeatability and reproducibility by averages and ranges (AIAG MSA): the method for hand calculation, which
+//! many customers still require in addition to the analysis of variance.
 //!
 //! `EV = R K1`, `AV = sqrt((Xdiff K2)^2 - EV^2 / (parts trials))`, `PV = Rp K3`. EV, AV and PV are the standard
 //! deviations of repeatability, of operators and of parts. R is the mean range of the trials, Xdiff the range of the

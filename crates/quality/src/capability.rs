@@ -59,13 +59,13 @@ pub struct Index {
 /// Capability indices; an index is `None` when it lacks a limit, values or spread.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Capability {
-    /// Width between the limits against the short-term deviation; needs both limits.
+    /// Distance between the limits, divided by six short-term standard deviations; needs both limits.
     pub cp: Option<Index>,
-    /// Distance from the mean to the nearer limit against the short-term deviation.
+    /// Distance from the mean to the nearer limit, divided by three short-term standard deviations.
     pub cpk: Option<Index>,
-    /// Width between the limits against the deviation of all values; needs both limits.
+    /// Distance between the limits, divided by six standard deviations of all values; needs both limits.
     pub pp: Option<Index>,
-    /// Distance from the mean to the nearer limit against the deviation of all values.
+    /// Distance from the mean to the nearer limit, divided by three standard deviations of all values.
     pub ppk: Option<Index>,
 }
 
@@ -98,7 +98,8 @@ impl Capability {
 }
 
 /// Returns the capability index towards the nearer limit, computed from percentiles and so valid for any distribution.
-/// Returns `None` without a limit, and with fewer than 741 values, whose outer percentiles would have to be extrapolated.
+/// Returns `None` without a limit, and with fewer than 741 values, whose outer percentiles would have to be
+/// extrapolated.
 pub fn by_percentiles(limits: Limits, values: &Ordered) -> Option<f64> {
     if values.len() < ENOUGH_FOR_TAILS {
         return None;

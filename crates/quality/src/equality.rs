@@ -1,6 +1,6 @@
 //! Tests whether several groups of values, such as lots, have the same mean and the same spread.
 //!
-//! - Means: Welch's analysis of variance (Welch 1951), which does not suppose equal spreads. With two groups it is
+//! - Means: Welch's analysis of variance (Welch 1951), which does not assume equal spreads. With two groups it is
 //!   Welch's t test, F = t^2.
 //! - Spreads: Brown and Forsythe (1974), an analysis of variance of the distances from the median of each group, which
 //!   suits skewed values.
@@ -71,7 +71,7 @@ pub fn means(groups: &[&[f64]]) -> Option<Equality> {
 }
 
 /// Tests whether the groups have the same spread; `None` with fewer than two groups, with a group of fewer than two
-/// values, and when the distances vary in no group.
+/// values, and when all values of each group lie equally far from its median.
 pub fn spreads(groups: &[&[f64]]) -> Option<Equality> {
     let distances = groups.iter().map(|values| {
         let middle = median(values).filter(|_| values.len() > 1)?;

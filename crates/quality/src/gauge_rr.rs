@@ -1,9 +1,9 @@
 //! Gauge repeatability and reproducibility by analysis of variance with interaction.
 //!
-//! In a crossed study every operator measures every part the same number of times, at least twice. The sum of squares
-//! is split among parts, operators, their interaction and the residual. When the F test of the interaction gives p >
-//! 0.25, the interaction is pooled with the residual. Negative components of variance count as zero. All results are
-//! standard deviations.
+//! In a crossed study every operator measures every part the same number of times, at least twice. The analysis splits
+//! the sum of squares among parts, operators, their interaction and the residual. When the F test of the interaction
+//! gives p > 0.25, it pools the interaction with the residual. Negative components of variance count as zero. All
+//! results are standard deviations.
 
 use super::crossing;
 use super::squares::{Sizes, Squares};
@@ -39,7 +39,7 @@ pub struct GaugeRr {
     pub repeatability: f64,
     /// Variation between operators.
     pub reproducibility: f64,
-    /// Variation between operators that depends on the part; 0 when the interaction is pooled.
+    /// Interaction: variation between operators that depends on the part; 0 when it is pooled with the residual.
     pub interaction: f64,
     /// Repeatability and reproducibility with interaction, combined: the variation of the gauge.
     pub grr: f64,

@@ -107,20 +107,20 @@ fn last(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     z.len() >= n && pattern(&z[z.len() - n..])
 }
 
-/// Returns true when the last `n` points have the pattern and the `n` before did not, so that a longer run signals
-/// once.
+/// Returns true when the last `n` points have the pattern and the `n` points that end one point earlier do not, so that
+/// a longer run signals once.
 fn run(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     last(z, n, &pattern) && !last(&z[..z.len() - 1], n, &pattern)
 }
 
-/// Returns true when at least `n` points lie beyond `far` on the same side.
+/// Returns true when at least `n` points lie farther than `far` standard deviations from the centre on the same side.
 fn one_side(z: &[f64], n: usize, far: f64) -> bool {
     let above = z.iter().filter(|&&it| it > far).count();
     let below = z.iter().filter(|&&it| it < -far).count();
     above >= n || below >= n
 }
 
-/// Returns true when the last point lies beyond `far`, and so do at least `n` points, itself included, on its side.
+/// Returns true when the last point lies beyond `far`, and on its side at least `n` points do, the last one included.
 fn ending(z: &[f64], n: usize, far: f64) -> bool {
     let Some(&end) = z.last() else { return false };
     let with_it = z.iter().filter(|&&it| it * end > 0.0 && it.abs() > far);

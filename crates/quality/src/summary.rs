@@ -12,8 +12,8 @@ pub struct Summary {
     pub param: String,
     /// Number of values.
     pub n: u64,
-    /// Number of tests without a value, for example because the coil current was over range; `None` when the values do
-    /// not come from tests, or from recipes that may not measure the parameter.
+    /// Number of tests without a value, for example because the coil current was over range; `None` when it is not
+    /// known how many tests should have one.
     pub without_value: Option<u64>,
     /// Mean.
     pub mean: Option<f64>,

@@ -1,6 +1,6 @@
 //! Mean, spread and histogram of values that arrive one at a time, in constant memory.
 //!
-//! Values are collected in portions of 1,000, whose figures are merged without loss. The first portion fixes the
+//! [`Tally`] collects values in portions of 1,000 and merges their figures without loss. The first portion fixes the
 //! classes of the histogram: about twelve over its range, and twelve more beyond each end. A value farther out counts
 //! in the outermost class.
 

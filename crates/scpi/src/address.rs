@@ -1,11 +1,11 @@
-//! Where an instrument is: `tcp:HOST:PORT`, `serial:PATH:BAUD`, and either behind a GPIB adapter.
+//! Address of an instrument: `tcp:HOST:PORT` or `serial:PATH:BAUD`, either also behind a GPIB adapter.
 
 use serde::Deserialize;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Way to an instrument.
+/// The link to an instrument: stream, and GPIB address if any.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinkAddress {
     /// The stream.
@@ -37,7 +37,7 @@ pub enum Transport {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Flow {
-    /// None.
+    /// No flow control.
     #[default]
     None,
     /// XON and XOFF characters.
@@ -46,7 +46,7 @@ pub enum Flow {
     Rts,
 }
 
-/// Why a text is no address of an instrument.
+/// Reason why a text is not an address of an instrument.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
     "found \"{found}\", expected tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDR or gpib-serial:PATH:BAUD:ADDR"

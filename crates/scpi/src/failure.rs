@@ -1,10 +1,10 @@
-//! Reasons why a program of queries brings no values. None of them says anything about the part under test.
+//! Reasons why a program of queries returns no values. None of them says anything about the part under test.
 
 use super::reply::ReplyError;
 use thiserror::Error;
 use units::Span;
 
-/// Reason why a program brings no values.
+/// Reason why a program returns no values.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Failure {
     /// No reply arrived in time.
@@ -18,7 +18,7 @@ pub enum Failure {
     /// There is no connection, or it was lost.
     #[error("no connection: {reason}")]
     Disconnected {
-        /// Port or host, and the reason that the system gives.
+        /// Port or host, and the system's reason.
         reason: String,
     },
     /// The reply does not have the form that the query prescribes.
@@ -26,7 +26,7 @@ pub enum Failure {
     Malformed {
         /// Command that was sent.
         command: String,
-        /// What is wrong with the reply.
+        /// Defect of the reply.
         reason: ReplyError,
     },
     /// The instrument reports an error.
@@ -34,31 +34,31 @@ pub enum Failure {
     Instrument {
         /// Number of the error.
         code: i32,
-        /// Text of the instrument.
+        /// Error text of the instrument.
         text: String,
     },
     /// The error queue of the instrument has lost errors, or does not become empty.
     #[error("the error queue of the instrument has overflowed")]
     QueueOverflow,
-    /// A result is over the range of the instrument.
+    /// A result exceeds the range of the instrument.
     #[error("{command}: the result is over range")]
     OverRange {
         /// Command that was sent.
         command: String,
     },
-    /// The instrument has no number for the result.
+    /// The instrument returned "not a number" as the result.
     #[error("{command}: the result is not a number")]
     NotANumber {
         /// Command that was sent.
         command: String,
     },
-    /// The front panel has the control.
+    /// The front panel controls the instrument.
     #[error("the instrument is in local mode: {text:?}")]
     Local {
         /// Text of the instrument.
         text: String,
     },
-    /// Another instrument answers.
+    /// The instrument that answers is another one than expected.
     #[error("found instrument {found:?}, expected {expected}")]
     Identity {
         /// Identity received.
@@ -66,16 +66,16 @@ pub enum Failure {
         /// Maker and model, or the whole identity of the instrument that answered before.
         expected: String,
     },
-    /// The instrument was switched off and on; its set-up was lost.
+    /// The instrument was switched off and on, which lost its set-up.
     #[error("the instrument was switched off and on")]
     PowerCycled,
     /// Replies and queries are out of step, so the values are not those of their queries.
     #[error("{command}: replies and queries are out of step")]
     OutOfStep {
-        /// Command whose reply shows it.
+        /// Command whose reply shows this.
         command: String,
     },
-    /// A setting that was read back differs.
+    /// A setting that the program read back differs from the expected one.
     #[error("{command}: found {found:?}, expected {expected:?}")]
     ReadBack {
         /// Query that reads the setting.
@@ -85,29 +85,29 @@ pub enum Failure {
         /// Reply that was expected.
         expected: String,
     },
-    /// The GPIB adapter has another instrument address than the link, because another program uses it.
+    /// The GPIB adapter addresses another instrument than that of the link, because another program uses the adapter.
     #[error("the adapter has GPIB address {found:?}, expected {expected}")]
     AdapterAddress {
-        /// Line of the adapter.
+        /// Address line from the adapter.
         found: String,
-        /// Address of the link.
+        /// GPIB address of the link.
         expected: String,
     },
     /// Bytes keep arriving without a query.
     #[error("the link never falls silent")]
     NeverSilent,
-    /// The program has used up its time.
+    /// The program did not end within its time.
     #[error("not finished within {} ms", limit.0 / 1000)]
     Overdue {
-        /// Time allowed for the program, with the resynchronisation before it.
+        /// Time allowed for the program, including the resynchronisation before it.
         limit: Span,
     },
-    /// The link could not be brought into step after several attempts.
+    /// Several attempts failed to bring queries and replies into step.
     #[error("the link is down after {attempts} attempts: {last}")]
     Down {
         /// Number of attempts.
         attempts: u8,
-        /// Failure of the last one.
+        /// Failure of the last attempt.
         last: Box<Failure>,
     },
 }
@@ -156,7 +156,8 @@ impl Failure {
         Self::CODES[at]
     }
 
-    /// Returns true when the stream of replies is in doubt, so that nothing is delivered before a resynchronisation.
+    /// Returns true when queries and replies may be out of step: the link then delivers nothing before a
+    /// resynchronisation.
     pub const fn is_doubt(&self) -> bool {
         match self {
             Self::OverRange { .. } | Self::NotANumber { .. } | Self::Instrument { .. } => false,

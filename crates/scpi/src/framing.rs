@@ -1,4 +1,4 @@
-//! Bytes around a message: its end on a raw stream, the commands of a Prologix-type GPIB adapter.
+//! Bytes around a message: the terminator on a raw stream, the commands of a Prologix-type GPIB adapter.
 
 use super::reply::Raw;
 use serde::Deserialize;
@@ -6,11 +6,11 @@ use units::Span;
 
 /// Longest time that an adapter waits for an instrument, milliseconds.
 const ADAPTER_LIMIT_MS: u64 = 3000;
-/// Share of the time for a reply after which an adapter gives up, percent: its own line arrives before the time is over,
-/// not among the bytes of the next query.
+/// Share of the reply time after which an adapter gives up, percent. Its own line then arrives before the reply time is
+/// over, and not among the bytes of the next query.
 const ADAPTER_SHARE_PCT: u64 = 90;
 
-/// End of a message to the instrument on a raw stream; each reply ends with a line feed.
+/// Terminator of a message to the instrument on a raw stream; each reply ends with a line feed in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Terminator {
@@ -30,17 +30,17 @@ impl Terminator {
     }
 }
 
-/// What stands between the stream and the instrument.
+/// Framing of messages between the stream and the instrument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Framing {
-    /// Nothing: messages with this end.
+    /// No adapter: messages end with this terminator.
     Direct(Terminator),
     /// A Prologix-type adapter, and the GPIB address of the instrument.
     Adapter(u8),
 }
 
 impl Framing {
-    /// Returns the lines that set an adapter up; none without one.
+    /// Returns the lines that set up an adapter; empty without an adapter.
     pub fn set_up(self) -> Vec<u8> {
         match self {
             Self::Direct(_) => Vec::new(),
@@ -51,8 +51,8 @@ impl Framing {
         }
     }
 
-    /// Returns what clears the interface of the instrument: a device clear of the adapter, or the end of a message, which
-    /// ends half a command that an earlier connection left behind.
+    /// Returns the bytes that clear the interface of the instrument: a device clear of the adapter, or a terminator,
+    /// which ends half a command that an earlier connection left behind.
     pub fn clear(self) -> Vec<u8> {
         match self {
             Self::Direct(end) => end.bytes().to_vec(),
@@ -60,7 +60,7 @@ impl Framing {
         }
     }
 
-    /// Returns the bytes of a command.
+    /// Returns the bytes of a command, framing included.
     pub fn send(self, command: &str) -> Vec<u8> {
         match self {
             Self::Direct(end) => [command.as_bytes(), end.bytes()].concat(),
@@ -73,7 +73,7 @@ impl Framing {
         }
     }
 
-    /// Returns the bytes of a query. An adapter gets the address of the instrument anew with every message.
+    /// Returns the bytes of a query, framing included. Every message repeats the GPIB address for the adapter.
     pub fn ask(self, command: &str, limit: Span) -> Vec<u8> {
         let mut bytes = self.send(command);
         if let Self::Adapter(_) = self {
@@ -84,8 +84,9 @@ impl Framing {
         bytes
     }
 
-    /// Returns the bytes of a message with a question behind it, and the line that must follow: an adapter says its address,
-    /// which proves the instrument that was written to and read.
+    /// Returns the message followed by a question to the adapter, and the line that must follow the reply: the adapter
+    /// states its present address, which proves which instrument it wrote to and read. Without an adapter, the message
+    /// stays as it is.
     pub fn proven(self, mut message: Vec<u8>) -> (Vec<u8>, Option<String>) {
         let Self::Adapter(address) = self else {
             return (message, None);
@@ -96,7 +97,7 @@ impl Framing {
 }
 
 impl Framing {
-    /// Returns true when a reply has the text of the line that proves the address.
+    /// Returns true when a reply looks like the line that proves the address.
     pub(crate) fn is_proof(self, raw: &Raw) -> bool {
         match (self, raw.text()) {
             (Self::Adapter(address), Ok(text)) => text.parse() == Ok(address),
@@ -105,7 +106,7 @@ impl Framing {
     }
 }
 
-/// Puts ESC before the characters that an adapter takes for its own.
+/// Puts ESC before the characters that an adapter would interpret itself.
 fn escaped(command: &str) -> impl Iterator<Item = u8> {
     let escape = |byte: u8| matches!(byte, b'\r' | b'\n' | 0x1B | b'+').then_some(0x1B);
     command

@@ -1,7 +1,8 @@
 //! SCPI, the protocol of measuring instruments, over streams and Prologix-type GPIB adapters: one query at a time, in
-//! bounded time, and never a reply that belongs to another query. Without clock and stream; `bus::instrument` has them.
+//! bounded time, and never a reply that belongs to another query. This crate has neither clock nor stream;
+//! `bus::instrument` adds them.
 //!
-//! A [`Program`] is a list of commands and queries; its values are delivered together or not at all.
+//! A [`Program`] is a list of commands and queries; the link delivers all of its values or none.
 //!
 //! ```
 //! use scpi::{Form, number, ErrorEntry, ReplyError};
@@ -11,23 +12,23 @@
 //! assert_eq!(ErrorEntry::read("-113,\"Undefined header\"").map(|it| it.code), Ok(-113));
 //! ```
 //!
-//! # Why a reply is the reply of its query
+//! # Why a reply belongs to its query
 //!
-//! A stream keeps the order of its bytes but numbers no reply, so the link counts on order and proves it:
+//! A stream keeps the order of its bytes, but no reply carries a number. So the link relies on the order and proves it:
 //!
-//! 1. One query is outstanding. Bytes before a query, or behind its reply, are a failure.
-//! 2. Every program ends with the error queue, read until it is empty, with `*ESR?`, which shows a loss of power, and with
-//!    `*ESE?`: the instrument must return the number that the program before left there. Each differs from the last 127, so
-//!    a reply too many or too few puts another reply in its place.
-//! 3. A reply that equals the reply before it may be a copy of it, so the query is repeated once.
-//! 4. After a failure that leaves doubt, nothing is delivered before a resynchronisation: a new connection (serial ports:
-//!    the end of a message; adapters: a device clear), silence, two numbers through `*ESE` with every other reply discarded,
-//!    the same identity as before, `*ESR?` for a loss of power, `*CLS`, and the whole set-up again. It begins with the
-//!    next program: a caller that must open a contactor first has the time to.
-//! 5. Behind an adapter each message carries its GPIB address, and the adapter says its address after each.
+//! 1. At most one query is outstanding. Bytes before a query, or after its reply, are a failure.
+//! 2. Every program ends with the error queue, read until it is empty, with `*ESR?`, which shows a loss of power, and
+//!    with `*ESE?`: the instrument must return the number that the previous program left there. Each number differs
+//!    from the last 127, so a reply too many or too few puts another reply in its place.
+//! 3. A reply that equals the previous reply may be a copy of it, so the link repeats the query once.
+//! 4. After a failure that leaves doubt, the link delivers nothing before a resynchronisation: a new connection (serial
+//!    ports: the end of a message; adapters: a device clear), silence, two numbers through `*ESE` with every other
+//!    reply discarded, the same identity as before, `*ESR?` for a loss of power, `*CLS`, and the whole set-up again. It
+//!    begins with the next program, so that a caller that must first open a contactor has the time for it.
+//! 5. Behind an adapter each message carries its GPIB address, and after each message the adapter states its address.
 //!
-//! What no host can notice: a number that lost digits and kept its end of line, and a command that was lost without a
-//! query that reads the setting back ([`Step::Ask`] with `expect`).
+//! No host can notice a number that lost digits and kept its end of line, or a lost command without a query that reads
+//! the setting back ([`Step::Ask`] with `expect`).
 //!
 //! # Files
 //!
@@ -36,8 +37,8 @@
 //! | `reply.rs`, `status.rs` | numbers, strings, blocks; error queue, event register, identity |
 //! | `reader.rs` | cuts bytes into replies, with a bound on each |
 //! | `program.rs`, `profile.rs` | programs; instrument profiles that build them |
-//! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; a program on its way; numbers that prove the step |
-//! | `framing.rs`, `address.rs`, `settings.rs` | ends of messages and adapters; places; times |
+//! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; the run of a program; numbers that prove the step |
+//! | `framing.rs`, `address.rs`, `settings.rs` | terminators and adapters; addresses; times |
 //! | `failure.rs` | every reason why there is no value |
 
 mod address;

@@ -1,4 +1,4 @@
-//! Numbers that prove the step of a link: 128 to 255, each different from the last 127.
+//! Numbers that prove that a link is in step: 128 to 255, each different from the last 127.
 
 /// The current number.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +19,7 @@ impl Nonce {
         self.at | 0x80
     }
 
-    /// Goes on to another number; an odd step visits all of them.
+    /// Advances to another number; because the step is odd, the sequence visits all numbers.
     pub(crate) fn advance(&mut self) {
         self.at = self.at.wrapping_add(self.step);
     }

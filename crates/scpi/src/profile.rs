@@ -1,5 +1,5 @@
 //! Instrument profiles: what an instrument is and which commands carry out a program, as a file states it. The crate
-//! `config` checks the keys; a link needs neither class, dialect nor accuracy.
+//! `config` checks the other keys (class, dialect, accuracy), which a link does not need.
 
 use super::address::{Flow, LinkAddress, Transport};
 use super::framing::{Framing, Terminator};
@@ -14,16 +14,16 @@ use units::Span;
 /// Profile of a model, or of a class of models with the same commands.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Profile {
-    /// Name of the profile, as its file is called.
+    /// Name of the profile: that of its file.
     pub name: String,
     /// Beginnings of the first and the second field of `*IDN?`.
     #[serde(flatten)]
     pub identity: ExpectedIdentity,
-    /// Time allowed for a reply without time of its own, milliseconds.
+    /// Time allowed for a reply, unless the query states its own, milliseconds.
     pub timeout_ms: u64,
-    /// Usual time from a query to its reply, milliseconds; `instrument check` compares it.
+    /// Typical time from a query to its reply, milliseconds; `instrument check` compares it with the measured time.
     pub latency_ms: f64,
-    /// Number of entries of the error queue.
+    /// Number of entries that the error queue holds.
     pub error_depth: u8,
     /// Proof that replies and queries are in step.
     #[serde(default)]
@@ -34,7 +34,7 @@ pub struct Profile {
     /// Flow control of a serial port.
     #[serde(default)]
     pub flow: Flow,
-    /// Command that ends local mode; sent first.
+    /// Command that ends local mode; the link sends it first.
     pub remote: Option<String>,
     set_up: Vec<StepText>,
     safe: Vec<StepText>,
@@ -74,11 +74,11 @@ enum ReplyForm {
     Block,
 }
 
-/// Reason why a profile is not accepted, with the path of its key.
+/// Reason why a profile is not acceptable, with the path of its key.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{key}: found {found}, expected {expected}")]
 pub struct ProfileFault {
-    /// Path of the key; items of lists by number from 0.
+    /// Path of the key; list items are numbered from 0.
     pub key: String,
     /// Value found, in words.
     pub found: String,
@@ -86,7 +86,7 @@ pub struct ProfileFault {
     pub expected: &'static str,
 }
 
-/// Reason why a profile gives no program.
+/// Reason why a profile does not yield a program.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProgramError {
     /// The profile has no such program.
@@ -112,7 +112,7 @@ pub enum ProgramError {
         /// Names of its arguments.
         known: Vec<String>,
     },
-    /// An argument is missing, given twice or out of range.
+    /// An argument is missing, given twice, or out of range.
     #[error("program {program}, argument {argument}: found {found}, expected {expected}")]
     Argument {
         /// Name of the program.
@@ -126,7 +126,7 @@ pub enum ProgramError {
     },
 }
 
-/// Returns the names that an argument may have, in words.
+/// Returns the permitted names of an argument, in words.
 fn either(known: &[String]) -> String {
     match known {
         [] => "no argument".to_owned(),
@@ -135,8 +135,8 @@ fn either(known: &[String]) -> String {
 }
 
 impl Profile {
-    /// Checks what no single key shows: an instrument can match, each step is a command or a query, every name in braces
-    /// is an argument.
+    /// Checks what no single key shows: that some instrument can match, that each step is either a command or a query,
+    /// and that every name in braces is an argument.
     ///
     /// # Errors
     /// Fails with the first fault.
@@ -266,13 +266,13 @@ fn wrong_argument(program: &str, argument: &str, given: &[f64], ends: (f64, f64)
     }
 }
 
-/// Returns the name of an argument as it stands in a step, for which its value goes out.
+/// Returns the placeholder of an argument in a step, which its value replaces.
 fn braced(argument: &str) -> String {
     format!("{{{argument}}}")
 }
 
 impl StepText {
-    /// Returns the texts in which names of arguments may stand.
+    /// Returns the texts of the step that may contain placeholders.
     fn texts(&self) -> impl Iterator<Item = &str> {
         let all = [&self.send, &self.ask, &self.expect];
         all.into_iter().flatten().map(String::as_str)
@@ -375,7 +375,7 @@ fn check_step(
     }
 }
 
-/// Returns the first name in braces that is no argument.
+/// Returns the first name in braces that is not an argument.
 fn unknown_name<'a>(text: &'a str, arguments: &BTreeMap<String, Bounds>) -> Option<&'a str> {
     let mut opened = text.split('{').skip(1);
     opened.find_map(|rest| match rest.split_once('}') {

@@ -1,28 +1,28 @@
-//! Programs: commands and queries that belong together. Their values are delivered together or not at all.
+//! Programs: commands and queries that belong together. A link delivers all of their values or none.
 
 use super::reply::Form;
 use units::Span;
 
-/// One message to the instrument, without its end.
+/// One message to the instrument, without its terminator.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step {
-    /// A command without reply.
+    /// A command, which has no reply.
     Send(String),
-    /// A query. It may be repeated, so it must not take something away that a second one would miss.
+    /// A query. The link may repeat it, so a query must not take away something that its repetition would miss.
     Ask {
         /// Text of the query; one query, without `;`.
         command: String,
         /// Form of its reply.
         form: Form,
-        /// Time allowed for the reply; `None` for the usual time of the link.
+        /// Time allowed for the reply; `None` for the default time of the link.
         limit: Option<Span>,
-        /// Reply that proves a setting; any other one fails the program.
+        /// Expected reply, which proves a setting; any other reply fails the program.
         expect: Option<String>,
     },
 }
 
 impl Step {
-    /// Returns a query with the usual time.
+    /// Returns a query with the default time.
     pub fn ask(command: &str, form: Form) -> Self {
         let (limit, expect) = (None, None);
         Self::Ask {
@@ -39,7 +39,7 @@ impl Step {
     }
 }
 
-/// Steps in their order. The values of a program are those of its queries without `expect`.
+/// Steps in order. The values of a program are those of its queries without `expect`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Program {
     /// The steps.
@@ -47,7 +47,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Returns the longest time for its steps when a query has `usual` and may be asked twice.
+    /// Returns the longest time of its steps: `usual` is the default time of a message, and each query may be asked
+    /// twice.
     pub(crate) fn longest(&self, usual: Span) -> Span {
         self.steps.iter().fold(Span(0), |sum, step| match step {
             Step::Send(_) => sum + usual,

@@ -1,17 +1,17 @@
-//! Cuts bytes into replies: lines, and blocks by their length.
+//! Cuts a stream of bytes into replies: lines, and blocks by their length.
 
 use super::reply::{BLOCK_LIMIT, Form, LINE_LIMIT, Raw, ReplyError};
 
-/// Bytes of one reply as they arrive. Its memory is bounded by the form of the reply.
+/// Bytes of one reply as they arrive; the form of the reply bounds their number.
 #[derive(Debug, Default)]
 pub struct Reader {
     bytes: Vec<u8>,
-    /// The reply, while a line that must follow it is still missing.
+    /// The complete reply, while the line that must follow it is still missing.
     found: Option<Raw>,
 }
 
 impl Reader {
-    /// Forgets all bytes; returns how many there were.
+    /// Discards all bytes; returns how many there were.
     pub fn clear(&mut self) -> usize {
         let forgotten = self.bytes.len();
         self.bytes.clear();
@@ -19,12 +19,12 @@ impl Reader {
         forgotten
     }
 
-    /// Returns the number of bytes that wait for the rest of their reply.
+    /// Returns the number of bytes that belong to no complete reply yet.
     pub fn waiting(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Returns the reply that waits for the line that must follow it.
+    /// Returns the complete reply that still waits for the line that must follow it.
     pub fn without_tail(&self) -> Option<&Raw> {
         self.found.as_ref()
     }
@@ -35,7 +35,7 @@ impl Reader {
     /// Fails as soon as the bytes cannot become such a reply.
     pub fn push(&mut self, bytes: &[u8], form: Form) -> Result<(), ReplyError> {
         self.bytes.extend_from_slice(bytes);
-        // Behind a complete reply stands a line.
+        // After a complete reply only a line may follow.
         let form = if self.found.is_some() {
             Form::Line
         } else {
@@ -52,7 +52,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Takes the next complete reply; `None` while bytes are missing.
+    /// Removes and returns the next complete reply; `None` while bytes are missing.
     ///
     /// # Errors
     /// Fails when a block has a wrong header or is not followed by its end.
@@ -64,8 +64,8 @@ impl Reader {
         }
     }
 
-    /// Takes a reply and the line `tail` behind it; `None` while bytes are missing. The inner error holds the line that
-    /// is not `tail`.
+    /// Removes and returns a reply together with the line `tail` that must follow it; `None` while bytes are missing.
+    /// The inner error holds the line that came instead of `tail`.
     ///
     /// # Errors
     /// Fails as [`Reader::take`] does.
@@ -102,7 +102,7 @@ impl Reader {
         while line.last() == Some(&b'\r') {
             line.pop();
         }
-        // XON and XOFF of a serial port whose driver leaves them in.
+        // XON and XOFF from a serial port whose driver does not remove them.
         line.retain(|it| !matches!(it, 0x11 | 0x13));
         Some(line)
     }
@@ -134,7 +134,7 @@ impl Reader {
             [] | [b'#'] => return Ok(Some(Header::Partial)),
             [b'#', count @ b'1'..=b'9', digits @ ..] => (usize::from(count - b'0'), digits),
             [b'#', b'0', ..] => return Err(ReplyError::BlockHeader),
-            // Also `#H1F`, a number.
+            // The reply may also be a number such as `#H1F`.
             [_, ..] if form == Form::Any => return Ok(None),
             [_, ..] => return Err(ReplyError::BlockHeader),
         };
@@ -160,8 +160,8 @@ impl Reader {
 }
 
 enum Header {
-    /// Digits are missing.
+    /// Digits of the header are missing.
     Partial,
-    /// Position of the first byte, and number of bytes.
+    /// Position of the first byte of content, and number of bytes.
     Whole { start: usize, length: usize },
 }

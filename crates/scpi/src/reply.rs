@@ -1,12 +1,12 @@
-//! Replies of IEEE 488.2: numbers, strings, blocks, and the reasons why one is not accepted.
+//! Replies of IEEE 488.2: numbers, strings, blocks, and the reasons why a reply is not accepted.
 
 use thiserror::Error;
 
-/// Longest line of a reply, bytes without its end.
+/// Greatest length of a line, bytes without its end.
 pub const LINE_LIMIT: usize = 65_536;
-/// Longest block, bytes; a form may set a lower limit.
+/// Greatest length of a block, bytes; a form may set a lower limit.
 pub const BLOCK_LIMIT: usize = 16_777_216;
-/// Value that an instrument sends for a result over its range, either sign.
+/// Value that an instrument sends for a result over its range, with either sign.
 const OVER_RANGE: f64 = 9.9e37;
 /// Value that an instrument sends for "not a number".
 const NOT_A_NUMBER: f64 = 9.91e37;
@@ -18,17 +18,17 @@ pub enum Form {
     Line,
     /// A number: NR1, NR2 or NR3.
     Number,
-    /// Numbers between commas.
+    /// Numbers, separated by commas.
     Numbers,
-    /// A string between quotation marks; a doubled mark inside stands for one.
+    /// A string in quotation marks; a doubled mark inside stands for a single one.
     Text,
     /// A definite block of at most this many bytes.
     Block(usize),
-    /// A block if the reply begins with `#` and a digit, else a line; for tools that do not know the query.
+    /// A block if the reply begins with `#` and a digit, otherwise a line; for tools that do not know the query.
     Any,
 }
 
-/// A reply in its form.
+/// A reply, parsed by its form.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reply {
     /// One line of text, without its end.
@@ -57,7 +57,7 @@ pub enum ReplyError {
         /// Value of the byte.
         byte: u8,
     },
-    /// The text is not a number.
+    /// The text is not a number in decimal form.
     #[error("found {found:?}, expected a number")]
     NotNumber {
         /// Text found, at most its first 40 characters.
@@ -86,19 +86,19 @@ pub enum ReplyError {
     TooLong {
         /// Length announced or received.
         length: usize,
-        /// Greatest length.
+        /// Greatest permitted length, bytes.
         most: usize,
     },
     /// The header of a block is not `#`, a digit from 1 to 9, and as many digits.
     #[error("no header of a definite block")]
     BlockHeader,
-    /// The block is followed by another byte than the end of the message.
+    /// A byte other than the end of the message follows the block.
     #[error("byte {byte:#04x} follows the block, expected its end")]
     BlockEnd {
         /// Value of the byte.
         byte: u8,
     },
-    /// The reply is a block.
+    /// The reply is a block where a line must come.
     #[error("a block, expected a line")]
     Block,
     /// More bytes followed the reply.
@@ -113,10 +113,11 @@ pub enum ReplyError {
 }
 
 impl Form {
-    /// Reads a complete reply, as [`Reader`](crate::Reader) returns it.
+    /// Parses a complete reply, as [`Reader`](crate::Reader) returns it.
     ///
     /// # Errors
-    /// Fails when the reply does not have this form, or is a number that is no value.
+    /// Fails when the reply does not have this form, or is a number that stands for no value (over range, not a
+    /// number).
     pub fn read(self, raw: &Raw) -> Result<Reply, ReplyError> {
         match (self, raw) {
             (Self::Block(_) | Self::Any, Raw::Block(bytes)) => Ok(Reply::Block(bytes.clone())),
@@ -132,7 +133,7 @@ impl Form {
     }
 }
 
-/// A complete reply before it is read.
+/// A complete reply that is not parsed yet.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Raw {
     /// Bytes of a line, without its end.
@@ -210,7 +211,7 @@ pub fn number(text: &str) -> Result<f64, ReplyError> {
 /// Reads a string between `"` or `'`.
 ///
 /// # Errors
-/// Fails when the marks are missing, differ, or stand alone inside.
+/// Fails when the marks are missing or differ, or when a mark inside is not doubled.
 pub fn string(text: &str) -> Result<String, ReplyError> {
     let not_string = || ReplyError::NotString {
         found: beginning(text),

@@ -1,7 +1,7 @@
-//! A program on its way: its steps, then the proof that its replies are its own.
+//! The run of a program: its steps, then the proof that its replies are its own.
 //!
-//! The proof is the error queue, read until it is empty, an event register without loss of power, and the number that the
-//! program before left in the instrument: a reply too many or too few shifts one of them to another query.
+//! The proof is the error queue, read until it is empty, an event register without loss of power, and the number that
+//! the previous program left in the instrument: a reply too many or too few shifts one of them to another query.
 
 use super::failure::Failure;
 use super::nonce::Nonce;
@@ -12,23 +12,24 @@ use super::settings::{Echo, LinkSettings};
 use super::status::{ErrorClass, ErrorEntry, StandardEvents};
 use units::Span;
 
-/// Place in a run.
+/// Present point of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum At {
-    /// Before the step with this number; `repeated` when its first reply equalled the reply before.
+    /// Before the step with this number; `repeated` when the link asks its query again, because its first reply
+    /// equalled the previous reply.
     Step {
         number: usize,
         repeated: bool,
     },
-    /// After this failure of a query: asks the instrument why.
+    /// After this failure of a query: asks the instrument for the reason.
     Why(Failure),
-    /// Reads the error queue; number of entries so far.
+    /// Reads the error queue; the number counts the entries so far.
     Errors(u8),
     /// Reads the event register, which keeps a loss of power until it is read.
     Events,
-    /// Reads the number that proves the step.
+    /// Reads the number that proves that the link is in step.
     Echo,
-    /// Leaves the next number.
+    /// Leaves the next number in the instrument.
     Mark,
     End,
 }
@@ -38,7 +39,7 @@ pub(crate) struct Run {
     program: Program,
     pub(crate) at: At,
     values: Vec<Reply>,
-    /// First failure that leaves the link in step.
+    /// First failure after which the link is still in step.
     failure: Option<Failure>,
 }
 
@@ -88,7 +89,8 @@ impl Run {
         }
     }
 
-    /// Takes the end of a move; returns the result at the end of the run. `echo` is the reply that proves the step.
+    /// Takes the outcome of a move; returns the result when the run ends. `echo` is the reply that proves that the link
+    /// is in step, `is_copy` says that the reply may be a copy of the previous one.
     pub(crate) fn advance(
         &mut self,
         settings: &LinkSettings,
@@ -140,7 +142,7 @@ impl Run {
                 });
             }
             Ok(raw) => raw,
-            // An instrument does not answer a query that it does not know; its error queue says so.
+            // An instrument does not answer a query that it does not know, but queues an error.
             Err(failure @ Failure::Timeout { .. }) => return Ok(At::Why(failure)),
             Err(failure) => return Err(failure),
         };
@@ -171,7 +173,7 @@ impl Run {
         })
     }
 
-    /// Takes an entry of the error queue that `count` others precede.
+    /// Takes an entry of the error queue; `count` is the number of entries before it.
     fn after_entry(
         &mut self,
         settings: &LinkSettings,
@@ -231,7 +233,7 @@ fn entry(raw: Option<&Raw>) -> Result<ErrorEntry, Failure> {
         .map_err(|reason| malformed("SYST:ERR?", reason))
 }
 
-/// Returns true when an error of this class explains why a query has no reply: the instrument did not carry it out.
+/// Returns true when an error of this class explains a missing reply: the instrument did not carry out the query.
 fn refuses(class: ErrorClass) -> bool {
     match class {
         ErrorClass::Command | ErrorClass::Execution => true,
@@ -240,7 +242,7 @@ fn refuses(class: ErrorClass) -> bool {
     }
 }
 
-/// Returns the value of a reply; none for a setting that reads back as expected.
+/// Returns the value of a reply; `None` for a setting that reads back as expected.
 fn value(
     command: &str,
     form: Form,
@@ -267,7 +269,8 @@ fn value(
     })
 }
 
-/// Returns true when both are the same text or the same number: `+1.0000E+00` reads back what `1` has set.
+/// Returns true when both are the same text or, within 1e-6, the same number: `+1.0000E+00` reads back what `1` has
+/// set.
 fn same(found: &str, expected: &str) -> bool {
     let numbers = (crate::number(found), crate::number(expected));
     match numbers {
@@ -276,7 +279,8 @@ fn same(found: &str, expected: &str) -> bool {
     }
 }
 
-/// Compares the echo; a number is left anew, so that no later echo equals this one.
+/// Compares the echo. When it is right and a number, the run then leaves a new number, so that no later echo equals
+/// this one.
 fn after_echo(settings: &LinkSettings, echo: &str, raw: Option<&Raw>) -> Result<At, Failure> {
     let line = raw.and_then(|it| it.text().ok()).unwrap_or_default();
     match (same(line, echo), settings.echo) {

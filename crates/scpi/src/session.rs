@@ -1,5 +1,5 @@
-//! The state machine of a link, without a stream and without a clock: it says what to do next, and its caller says how
-//! that ended. Every move has a time limit, and the number of moves of a program is bounded.
+//! The state machine of a link, without a stream and without a clock: it returns the next move, and its caller reports
+//! how the move ended. Every move has a time limit, and the number of moves of a program is bounded.
 
 use super::failure::Failure;
 use super::framing::Framing;
@@ -12,7 +12,7 @@ use super::status::Identity;
 use std::mem;
 use units::Span;
 
-/// What the caller does next.
+/// Next move, which the caller carries out.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Move {
     /// Closes the stream, waits, opens a new one.
@@ -24,32 +24,32 @@ pub enum Move {
     },
     /// Writes bytes.
     Send {
-        /// Bytes with their end.
+        /// Bytes, terminator included.
         bytes: Vec<u8>,
         /// Time for writing, and for the line that must follow.
         limit: Span,
-        /// Line that must follow: the address of a GPIB adapter, which proves who got the command.
+        /// Line that must follow: the address of a GPIB adapter, which proves who received the command.
         tail: Option<String>,
     },
     /// Writes a query and reads its reply.
     Ask(Question),
-    /// Discards what arrives until nothing does.
+    /// Discards incoming bytes until there is silence.
     Drain {
-        /// Silence that ends it.
+        /// Length of the silence that ends the move.
         silence: Span,
-        /// Time after which it fails.
+        /// Time after which the move fails.
         limit: Span,
     },
     /// Ends the program: the values of its queries, or the reason why there are none.
     Done(Result<Vec<Reply>, Failure>),
 }
 
-/// A query as the caller carries it out.
+/// A query for the caller to carry out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
-    /// Text for messages.
+    /// Text of the query for messages.
     pub command: String,
-    /// Bytes to write; empty to read one more reply only.
+    /// Bytes to write; empty to read only one more reply.
     pub bytes: Vec<u8>,
     /// Form that tells where the reply ends.
     pub form: Form,
@@ -57,12 +57,12 @@ pub struct Question {
     pub limit: Span,
     /// Line that must follow the reply.
     pub tail: Option<String>,
-    /// True when bytes before the query or behind the reply are a failure; false while they are discarded.
+    /// True when bytes before the query or after the reply are a failure; false when the caller discards them.
     pub strict: bool,
 }
 
 impl Question {
-    /// Returns a query whose reply must come alone, and, behind an adapter, with the proof of its address.
+    /// Returns a query whose reply must come alone and, behind an adapter, with the proof of its address.
     pub fn new(framing: Framing, command: &str, form: Form, limit: Span) -> Self {
         let (bytes, tail) = framing.proven(framing.ask(command, limit));
         Self {
@@ -76,7 +76,7 @@ impl Question {
     }
 }
 
-/// Place in a resynchronisation.
+/// Phase of a resynchronisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     Open,
@@ -93,14 +93,14 @@ enum Phase {
         round: u8,
         discarded: u8,
     },
-    /// Before `*CLS`, which would clear the sign of a loss of power.
+    /// Reads the event register; must come before `*CLS`, which would clear the sign of a loss of power.
     Events,
     ClearStatus,
 }
 
 impl Phase {
-    /// Returns the failure of a search: after discarded replies, silence means that none was the expected one, not that
-    /// the instrument is silent.
+    /// Returns the failure of a search. When the search has already discarded replies, a timeout means that none of
+    /// them was the expected one, and not that the instrument is silent.
     fn explained(self, failure: Failure) -> Failure {
         match (self, failure) {
             (
@@ -112,7 +112,7 @@ impl Phase {
     }
 }
 
-/// Replies that are discarded in search of an echo.
+/// Greatest number of replies that a search for an echo discards.
 const DISCARDED: u8 = 32;
 
 #[derive(Debug)]
@@ -128,9 +128,9 @@ enum Doing {
 pub struct Session {
     settings: LinkSettings,
     doing: Doing,
-    /// The program that waits for resynchronisation and set-up.
+    /// Program that waits for the resynchronisation and the set-up.
     waiting: Program,
-    /// True when it waits for the set-up too.
+    /// True when this program also waits for the set-up.
     wants_set_up: bool,
     /// True when the set-up succeeded after the last resynchronisation.
     is_set_up: bool,
@@ -139,18 +139,19 @@ pub struct Session {
     generation: u64,
     backoff: Span,
     nonce: Nonce,
-    /// Identity of the instrument that answered first.
+    /// Identity of the instrument that answered first; later ones must be the same.
     bound: Option<String>,
-    /// True when the loss of power that the event register will show has been reported.
+    /// True when the link has already reported the loss of power that the event register will show.
     power_reported: bool,
-    /// Failure that the program ends with although the resynchronisation succeeded.
+    /// True when the program must end with [`Failure::PowerCycled`] although the resynchronisation succeeded.
     lost_power: bool,
-    /// The last reply; one that equals it may be its copy.
+    /// The last reply; a new reply that equals it may be its copy.
     previous: Option<Raw>,
 }
 
 impl Session {
-    /// Creates the session of a closed link; `seed` begins the sequence of numbers that prove the step.
+    /// Creates the session of a closed link; `seed` selects the sequence of numbers that prove that the link is in
+    /// step.
     pub fn new(settings: LinkSettings, seed: u64) -> Self {
         let backoff = Span(0);
         Self {
@@ -191,17 +192,17 @@ impl Session {
         self.bound.as_deref()
     }
 
-    /// Makes the next program begin with a resynchronisation, after a failure outside a program.
+    /// Makes the next program begin with a resynchronisation, because something failed outside of a program.
     pub fn doubt(&mut self) {
         self.in_step = false;
     }
 
-    /// Begins a program. One that was abandoned leaves doubt behind.
+    /// Begins a program. When the previous program was abandoned, a resynchronisation comes first.
     pub fn start(&mut self, program: Program) -> Move {
         self.begin(program, true)
     }
 
-    /// Begins a program that makes the instrument safe: after doubt without the set-up, which may be what fails.
+    /// Begins a program that makes the instrument safe. After doubt it leaves out the set-up, which may be what fails.
     pub fn start_safe(&mut self, program: Program) -> Move {
         self.begin(program, false)
     }
@@ -215,7 +216,7 @@ impl Session {
         self.sync(0)
     }
 
-    /// Takes the end of the last move; a query that succeeded brings its reply.
+    /// Takes the outcome of the last move, for a successful query with its reply; returns the next move.
     pub fn next(&mut self, outcome: Result<Option<Raw>, Failure>) -> Move {
         if let Err(Failure::Disconnected { .. }) = &outcome {
             self.is_open = false;
@@ -229,7 +230,7 @@ impl Session {
             }
             Doing::SetUp(mut run) => match self.advance(&mut run, outcome) {
                 None => self.enter(Doing::SetUp(run)),
-                // A set-up that fails leaves an instrument of which nothing is known.
+                // After a failed set-up the state of the instrument is unknown.
                 Some(Err(failure)) => self.finish(Err(failure), false),
                 Some(Ok(_)) => {
                     self.is_set_up = true;
@@ -260,7 +261,7 @@ impl Session {
         self.enter(Doing::Program(Run::new(program)))
     }
 
-    /// Makes the move of a place.
+    /// Sets the present point and returns its move.
     fn enter(&mut self, doing: Doing) -> Move {
         let next = match &doing {
             Doing::Nothing => Move::Done(Ok(Vec::new())),
@@ -275,7 +276,7 @@ impl Session {
         (self.in_step, self.is_set_up) = (false, false);
         self.generation += 1;
         self.previous = None;
-        // A serial port stays open at first; what does not cure it may be the port itself.
+        // A serial port stays open in the first attempt; when that fails, the port itself may be the cause.
         let phase = match self.is_open && !self.settings.reopen && attempt == 0 {
             true => Phase::Adapter,
             false => Phase::Open,
@@ -347,7 +348,8 @@ impl Session {
         }
     }
 
-    /// Returns a query, or, when a reply was discarded, a move that reads the next one.
+    /// Returns a move that sends the query or, when the search has already discarded a reply, only reads the next
+    /// reply.
     fn search(&self, command: &str, discarded: u8) -> Move {
         let limit = self.settings.limit;
         let bytes = match discarded {
@@ -404,7 +406,7 @@ impl Session {
             },
             Phase::Identity { round, discarded } if !self.is_identity(line) => {
                 let is_one = line.matches(',').count() >= 2;
-                // Behind an echo no older reply can come.
+                // After an echo no older reply can come.
                 let is_due = self.settings.echo == Echo::Ese || self.bound.is_none();
                 if is_one && (is_due || discarded == DISCARDED) {
                     return Err(self.other_instrument(line));
@@ -460,14 +462,14 @@ impl Session {
         }
     }
 
-    /// Takes the end of a move of a run; returns its result at its end.
+    /// Takes the outcome of a move of a run; returns the result when the run ends.
     fn advance(
         &mut self,
         run: &mut Run,
         outcome: Result<Option<Raw>, Failure>,
     ) -> Option<Result<Vec<Reply>, Failure>> {
         let raw = outcome.as_ref().ok().and_then(Option::as_ref);
-        // Behind an adapter a lost reply may leave the line that proves its address in the place of the reply.
+        // Behind an adapter, after a lost reply, the line that proves the address may stand in the place of the reply.
         let copy = raw.is_some_and(|it| {
             self.previous.as_ref() == Some(it) || self.settings.framing.is_proof(it)
         });

@@ -1,4 +1,4 @@
-//! Settings of a link: what the instrument must be, and how long each thing may take.
+//! Settings of a link: which instrument it must find, and the time limits.
 
 use super::framing::{Framing, Terminator};
 use super::program::Program;
@@ -16,21 +16,21 @@ pub enum Echo {
     #[default]
     Ese,
     /// The identity alone, for an instrument without that register. After doubt the link waits for a silence as long as
-    /// the usual time of a query.
+    /// the default time of a query.
     Identity,
 }
 
-/// Instruments that a link accepts, by the first two fields of `*IDN?`.
+/// Instruments that a link accepts, by maker and model, the first two fields of `*IDN?`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct ExpectedIdentity {
-    /// Beginnings of the maker's name, any of them; capitals and small letters are the same.
+    /// Accepted beginnings of the maker's name; upper and lower case are the same.
     pub makers: Vec<String>,
-    /// Beginnings of the model, any of them.
+    /// Accepted beginnings of the model.
     pub models: Vec<String>,
 }
 
 impl ExpectedIdentity {
-    /// Returns true when the identity is one of these.
+    /// Returns true when the identity is acceptable.
     pub fn accepts(&self, identity: &Identity) -> bool {
         let begins = |found: &str, wanted: &[String]| {
             let head = |it: &String| {
@@ -51,36 +51,37 @@ impl fmt::Display for ExpectedIdentity {
     }
 }
 
-/// Settings of a link. The instrument keeps nothing that the set-up does not say.
+/// Settings of a link. The set-up must contain every setting of the instrument that matters, because the link keeps no
+/// other.
 #[derive(Debug, Clone)]
 pub struct LinkSettings {
-    /// What the instrument must be; `None` for any.
+    /// Instruments that the link accepts; `None` for any.
     pub identity: Option<ExpectedIdentity>,
-    /// Command that ends local mode, sent first; many instruments need it on RS-232.
+    /// Command that ends local mode; the link sends it first. Many instruments need it on RS-232.
     pub remote: Option<String>,
-    /// Set-up, sent after every resynchronisation.
+    /// Set-up, which the link sends after every resynchronisation.
     pub set_up: Program,
     /// Proof that the link is in step.
     pub echo: Echo,
     /// Number of entries that the error queue holds.
     pub error_depth: u8,
-    /// What stands between stream and instrument.
+    /// Framing of messages between stream and instrument.
     pub framing: Framing,
-    /// True when a new connection is opened after doubt; false on serial ports.
+    /// True when the link opens a new connection after doubt; false on serial ports.
     pub reopen: bool,
-    /// Usual time for the reply to a query.
+    /// Default time for the reply to a query.
     pub limit: Span,
     /// Time for opening a connection.
     pub open_limit: Span,
-    /// Silence that ends the discarding of old replies.
+    /// Length of the silence that ends the discarding of old replies.
     pub silence: Span,
     /// Time for a whole resynchronisation with all its attempts.
     pub sync_limit: Span,
-    /// Attempts of a resynchronisation.
+    /// Greatest number of attempts of a resynchronisation.
     pub attempts: u8,
     /// Wait after the first failed attempt to open; it doubles with each failure.
     pub backoff_first: Span,
-    /// Longest such wait.
+    /// Longest wait between two attempts to open.
     pub backoff_longest: Span,
 }
 
@@ -106,7 +107,7 @@ impl Default for LinkSettings {
 }
 
 impl LinkSettings {
-    /// Returns the longest time that `program` can take, with a resynchronisation and the set-up before it.
+    /// Returns the longest time that `program` can take, including a resynchronisation and the set-up before it.
     pub fn longest(&self, program: &Program) -> Span {
         let usual = self.limit;
         let ending = Span(usual.0 * (u64::from(self.error_depth) + 4));

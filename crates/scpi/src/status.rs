@@ -1,4 +1,4 @@
-//! What an instrument says about itself: entries of its error queue, bits of its standard event register, its identity.
+//! Status of an instrument: entries of its error queue, bits of its standard event register, its identity.
 
 use super::reply::{ReplyError, beginning, string};
 
@@ -7,7 +7,7 @@ use super::reply::{ReplyError, beginning, string};
 pub struct StandardEvents(pub u8);
 
 impl StandardEvents {
-    /// Returns true when the instrument was switched on since the last read: its set-up is lost.
+    /// Returns true when the instrument was switched on since the last read, which means that its set-up is lost.
     pub const fn power_on(self) -> bool {
         self.0 & 0x80 != 0
     }
@@ -16,7 +16,7 @@ impl StandardEvents {
 /// An entry of the error queue.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ErrorEntry {
-    /// Number: 0 when the queue is empty, negative as SCPI defines them, positive as the maker does.
+    /// Error number: 0 for an empty queue, negative as defined by SCPI, positive as defined by the maker.
     pub code: i32,
     /// Text of the instrument.
     pub text: String,
@@ -29,13 +29,13 @@ pub enum ErrorClass {
     None,
     /// -100 to -199: the instrument does not know the command.
     Command,
-    /// -200 to -299: the command cannot be carried out now.
+    /// -200 to -299: the instrument cannot carry out the command now.
     Execution,
     /// -350: the queue was full and has lost errors.
     Overflow,
-    /// 550: the front panel has the control (local mode).
+    /// 550: the front panel controls the instrument (local mode).
     Local,
-    /// -300 to -399 without -350, and every other positive number.
+    /// -300 to -399 except -350, and every other positive number.
     Device,
     /// -400 to -499: a query and its reply do not fit together.
     Query,

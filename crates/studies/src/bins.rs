@@ -1,5 +1,5 @@
-//! Outcome of the parts: good parts rejected, bad parts passed, rows that name a bin in which the part does not lie;
-//! and the study `sorting`, which shows them over many lots.
+//! Where the parts of a lot end: good parts rejected, bad parts passed, and rows that name another bin than the one
+//! where the part lies; and the study `sorting`, which counts these over many lots.
 
 use super::chart::Chart;
 use super::exception;
@@ -9,7 +9,8 @@ use super::order::Order;
 use super::output::Report;
 use std::collections::BTreeMap;
 
-/// Number of good parts in a lot of the figure `lots of 100 good parts without a reject`.
+/// Number of good parts in one lot of the figure `lots of 100 good parts without a reject`, whatever the size of the
+/// lots that the study runs.
 const GOOD_PARTS_OF_A_LOT: usize = 100;
 
 /// Returns the bin to which a part with this defect belongs; `None` for an unknown defect.
@@ -24,7 +25,8 @@ pub fn bin_of(defect: &str) -> Option<&'static str> {
     })
 }
 
-/// Runs many lots; counts the good parts that were rejected, and for each defect the parts that went to its bin.
+/// Runs many lots and counts the rejected good parts and, for each defect, the parts that went to the bin of that
+/// defect.
 ///
 /// # Errors
 /// Fails when a lot cannot be run.
@@ -77,7 +79,7 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
     ]
 }
 
-/// Counts parts without a defect whose true value lies beyond a limit, and those of them that passed.
+/// Counts the parts without a defect that have a true value beyond a limit, and how many of these passed.
 fn out_of_limits(parts: &[&Part]) -> Figure {
     let passed = parts.iter().filter(|part| part.has_passed()).count();
     let n = parts.len() as u64;
@@ -119,8 +121,8 @@ pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     seen.into_iter().map(row).collect()
 }
 
-/// Cuts the parts into lots of 100 in the order of production and returns the number of lots without a reject and of
-/// all lots. Parts that do not fill a lot count only when there is no other lot.
+/// Cuts the parts into lots of 100 in the order of production; returns the number of lots without a reject and the
+/// number of lots. A remainder of fewer than 100 parts does not count; fewer than 100 parts in all count as one lot.
 pub fn lots_without_reject(rejected: &[bool]) -> (u64, u64) {
     let size = GOOD_PARTS_OF_A_LOT.min(rejected.len()).max(1);
     let lots = rejected.chunks_exact(size);

@@ -1,4 +1,4 @@
-//! A bar chart as SVG: one horizontal bar per row, and a mark at each limit of the study.
+//! A bar chart as SVG: one horizontal bar per row, and a vertical line at each limit of the study.
 //!
 //! Lengths are px. Plain text and fixed colours make the file look the same in a page, in a viewer and on paper.
 
@@ -14,7 +14,7 @@ pub struct Chart {
     pub unit: &'static str,
     /// Value at the left end of the axis.
     pub from: f64,
-    /// Values with a line across all bars.
+    /// Values at which a vertical line crosses all bars, such as limits.
     pub marks: Vec<f64>,
     /// Label and value, from top to bottom; `None` draws no bar.
     pub bars: Vec<(String, Option<f64>)>,
@@ -26,7 +26,7 @@ const PLOT: f64 = 480.0;
 const NUMBER: f64 = 100.0;
 const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
-/// Height of a line of numbers below the axis, px.
+/// Height of one line of the numbers below the axis, px.
 const NUMBER_LINE: f64 = 15.0;
 
 impl Chart {
@@ -108,7 +108,8 @@ impl Chart {
         svg.file(&self.title)
     }
 
-    /// Returns each value below the axis with the number of its line, 0 for the highest, so that no two numbers overlap.
+    /// Assigns each value below the axis to a line of text, 0 for the highest, so that no two numbers overlap; returns
+    /// the values with their lines.
     fn number_lines(&self, values: impl Iterator<Item = f64>) -> Vec<(f64, u32)> {
         let mut placed: Vec<(f64, u32)> = Vec::new();
         for value in values {

@@ -1,9 +1,9 @@
-//! Study `coil`: test time against error of the coil resistance, for several settling times of the current and numbers
-//! of averaged scans; then the errors that self-heating, temperature and converter cause.
+//! Study `coil`: test time against error of the coil resistance, for several settling times of the current and several
+//! numbers of averaged scans; then the errors from self-heating, from temperature and from the converter.
 //!
-//! The converter runs freely, and a conversion counts only when it begins after the settling. Two channels share the
-//! converter: the first scan takes three conversion periods, each further scan two. Many scans give a biased mean,
-//! because the coil heats itself at the pre-bias meanwhile.
+//! The converter runs freely, and only a conversion that begins after the settling time counts. Two channels share the
+//! converter: the first scan takes three conversion periods, each further scan two. Averaging many scans biases the
+//! mean, because the coil heats up under the pre-bias voltage meanwhile.
 
 use super::figure::{Bar, Figure};
 use super::method::{self, BAUDS, TimedParameter};
@@ -13,7 +13,7 @@ use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
 
 const COIL: TimedParameter = TimedParameter::of(Parameter::CoilResistance, &["coil"]);
-/// Methods: milliseconds of settling, and number of scans. The third pair is the default of a recipe.
+/// Methods to compare: settling time in ms, and number of scans. The third pair is the default of a recipe.
 const METHODS: [(i64, i64); 7] = [
     (1, 1),
     (4, 1),
@@ -26,7 +26,7 @@ const METHODS: [(i64, i64); 7] = [
 /// Greatest rms error of the default method in the world with all errors, percent.
 const TOTAL_PCT: f64 = 0.12;
 
-/// Returns worlds with one error each, in which the default method runs.
+/// Returns worlds for the default method, each with one kind of error.
 fn worlds() -> [(&'static str, Vec<Change>); 3] {
     [
         (

@@ -1,10 +1,11 @@
-//! Study `contact`: test time against error of contact resistance, for polarities, a drifting EMF, numbers of closures
-//! and early stop.
+//! Study `contact`: test time against error of the contact resistance, for polarities of the measuring current, a
+//! drifting thermal EMF, numbers of closures, and early stop (no further closures once the verdict is certain).
 //!
-//! - Error is the difference from the resistance of the closures that were read. Every world here has an EMF of 10 uV.
-//! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it,
-//!   and it falls with the root of the number of closures.
-//! - Seconds are those of all stages that read a contact; the same stages measure times and bounce.
+//! - Error is the difference from the true resistance of the closures that the rig read. Every world here has a thermal
+//!   EMF of 10 uV (1 sd).
+//! - Repeatability is the scatter over repeated tests of the same bodies. Films on the contact cause nearly all of it,
+//!   and it falls with the square root of the number of closures.
+//! - Seconds are the rig time of all stages that read a contact; the same stages also measure times and bounce.
 
 use super::figure::{Figure, rms};
 use super::lot::Lot;
@@ -28,12 +29,13 @@ const CONTACTS: [(&str, TimedParameter); 2] = [
 ];
 /// Thermal EMF of a part, microvolts (1 sd).
 const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
-/// Drift of the EMF, microvolts per second: so fast that it adds more error to two polarities than noise does.
+/// Drift of the EMF, microvolts per second: so fast that it adds more error than noise does to a method with two
+/// polarities.
 const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
 /// Number of passes of each body in the comparison of films.
 const PASSES: u64 = 6;
 
-/// Polarities: name in the recipe and in the report.
+/// Sequences of polarities: name in the recipe, and name in the report.
 const POLARITIES: [(&str, &str); 2] = [("plus_minus", "+ -"), ("plus_minus_minus_plus", "+ - - +")];
 
 fn recipe(polarities: &str, closures: i64, stops_early: bool) -> Vec<Change> {
@@ -87,8 +89,8 @@ fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Shows the effect of films: for each number of closures, the scatter of one body from pass to pass, percent of its
-/// resistance.
+/// Shows the effect of contact films: for each number of closures, the scatter of one body from test to test, percent
+/// of its resistance.
 fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let bodies = (order.parts / PASSES).max(2);
     let order = Order {
@@ -110,8 +112,8 @@ fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(by_root(figures))
 }
 
-/// Adds the column `by_root` to each row: the value expected from the first row of the same contact if scatter falls
-/// with the root of the number of closures. The NC contact has one closure more than NO, the one at rest.
+/// Adds the column `by_root` to each row: the scatter expected from the first row of the same contact if it falls with
+/// the square root of the number of closures. The NC contact has one closure more than NO: it is closed also at rest.
 fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
     let first: Vec<Option<f64>> = figures.iter().take(2).map(|row| row.value).collect();
     let root = |place: usize| {
@@ -124,7 +126,8 @@ fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
         .collect()
 }
 
-/// Returns the repeatability: the pooled scatter of the values of one body, percent of its mean.
+/// Returns the repeatability: the rms over bodies of the standard deviation of the values of one body, percent of its
+/// mean.
 fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64) -> Figure {
     let body = |lot: &Lot, body: u64| -> Vec<f64> {
         let again = lot.good().filter(|part| (part.seq - 1) % bodies == body);
@@ -143,8 +146,8 @@ fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64)
     Figure::new(name, n, rms, "%").with("seconds", timed.seconds(lots).mean())
 }
 
-/// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, one near the
-/// limit up to eight times.
+/// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, and a part
+/// near the limit up to eight times.
 fn early(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for mohm in [20.0, 60.0, 80.0, 95.0] {

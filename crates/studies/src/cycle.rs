@@ -1,8 +1,8 @@
-//! Rig time of a test and of a cycle, and the pieces of both.
+//! Rig time of a test and of a cycle, and the pieces of each.
 //!
-//! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the
-//! rows do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean
-//! cycle.
+//! A cycle lasts from the nest exit of one part to that of the next. The cycle minus the test is mechanics; the time of
+//! the test that no piece names is `rest`. Shares are means over the parts that have both times, so that the pieces add
+//! up to the mean cycle.
 
 use super::bins;
 use super::chart::Chart;
@@ -15,19 +15,19 @@ use super::path;
 use quality::Spread;
 use quality::spread::median;
 
-/// Bar of the longest test of a good part, seconds of rig time.
+/// Greatest permitted time of the longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// Number of parts after which the overshoot model ([`machine::dut::em_relay::overshoot`]) places the fine ramps well.
-/// The model has six terms, and the reference parts lie far apart: after fewer parts its uncertainty makes the ramps
-/// long.
+/// Number of parts from which the overshoot model ([`machine::dut::em_relay::overshoot`]) starts the fine ramps close
+/// to the threshold. The model has six terms, and the reference parts lie far apart: after fewer parts its uncertainty
+/// makes the ramps longer.
 const LEARNING_PARTS: usize = 6;
-/// Bar of the longest test of any part, seconds of rig time: a defect may need another ramp.
+/// Greatest permitted time of the longest test of any part, seconds of rig time: a defect may need another ramp.
 const ANY_TEST_S: f64 = 1.0;
-/// Bar of the mean test under a recipe that measures adaptively, seconds of rig time.
+/// Greatest permitted mean test time under a recipe that measures adaptively, seconds of rig time.
 const ADAPTIVE_MEAN_S: f64 = 0.60;
-/// Greatest ratio of the mean test to the least time that [`bound`] finds.
+/// Greatest permitted ratio of the mean test time to the lower bound of [`bound`].
 const RATIO: f64 = 1.15;
-/// Bar of the cycle with overlap, seconds of rig time.
+/// Greatest permitted cycle with overlapping motions, seconds of rig time.
 const CYCLE_S: f64 = 2.5;
 /// Pieces of a test: key in the rows and name in the report.
 const PIECES: [(&str, &str); 4] = [
@@ -59,8 +59,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("cycle", about, groups, chart).noted(notes))
 }
 
-/// Returns longest, mean and median of tests and cycles; for good parts also those of the first [`LEARNING_PARTS`] of a
-/// lot and of the parts after them.
+/// Returns longest, mean and median time of tests and of cycles; for good parts also those of the first
+/// [`LEARNING_PARTS`] parts of a lot and of all later parts.
 pub fn times(lots: &[Lot]) -> Vec<Figure> {
     let good = |from: usize, to: usize| -> Vec<f64> {
         let of = move |lot| Lot::good(lot).skip(from).take(to - from);
@@ -113,8 +113,8 @@ fn longest(name: impl Into<String>, bar_s: f64, times: &[f64]) -> Figure {
         .bar(Bar::AtMost(bar_s))
 }
 
-/// Compares the mean test time of good parts with its lower bound: the same acts on a bus that takes no time, so that
-/// conversion, settling and the contact events alone remain.
+/// Compares the mean test time of good parts with its lower bound: the time of the same test steps on a bus without
+/// delay, which leaves conversion, settling and the contact events alone.
 pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     let tests: Vec<(f64, f64)> = lots
         .iter()
@@ -132,7 +132,7 @@ pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     ]
 }
 
-/// Returns the mean seconds of each piece of a cycle.
+/// Returns the mean time of each piece of a cycle, seconds of rig time.
 pub fn pieces(lots: &[Lot]) -> Vec<Figure> {
     let parts: Vec<(&Part, f64, f64)> = lots
         .iter()

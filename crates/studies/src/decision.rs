@@ -1,13 +1,13 @@
 //! False accepts and false rejects: counted against the truth, and predicted by the decision rule ([`super::risk`])
 //! from the rows.
 //!
-//! A lot in the middle of its limits has next to no risk, and a count of zero proves little. A second set of lots
+//! A lot in the middle of its limits has almost no risk, so that a count of zero proves little. A second set of lots
 //! therefore has its mean operate voltage one standard deviation inside the limit: one part in six lies beyond the
 //! limit, and one in twenty gets a confirmation measurement.
 //!
-//! Reference parts and instruments are common to all parts of a lot, so that lots differ by more than chance. The bar
-//! of a count is its prediction plus or minus three standard deviations of the sum over lots, from the scatter of the
-//! lots.
+//! The errors of reference parts and instruments are common to all parts of a lot, so that lots differ by more than
+//! chance. A count must lie within three standard deviations of its prediction; the standard deviation is that of the
+//! sum over lots, from the scatter between lots.
 
 use super::bins;
 use super::chart::Chart;
@@ -25,10 +25,10 @@ use std::ops::RangeInclusive;
 
 /// Parts per million.
 const PPM: f64 = 1e6;
-/// Rated voltage of the part that `[lot]` of a world describes, V.
+/// Rated coil voltage of the part that the table `[lot]` of a world describes, V.
 const LOT_V: f64 = 12.0;
-/// A value whose uncertainty is below this share of the usual one has had a confirmation measurement: noise alone
-/// changes an uncertainty by less than 2 %.
+/// Share of the usual uncertainty below which a value must have had a confirmation measurement: noise alone changes an
+/// uncertainty by less than 2 %.
 const AGAIN: f64 = 0.98;
 
 /// Runs the lots and makes the report.
@@ -56,8 +56,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("decision", about, groups, chart))
 }
 
-/// Returns the false rejects and accepts that the decision rule predicts for one parameter, with and without guard
-/// band: a row in parts per million, and the probabilities of a false accept and a false reject with guard band.
+/// Predicts the false rejects and accepts of one parameter by the decision rule. Returns a row in parts per million
+/// with and without guard band, and the probabilities of a false accept and of a false reject with guard band.
 fn predicted(
     parameter: Parameter,
     limits: &RangeInclusive<f64>,
@@ -84,8 +84,8 @@ fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
 }
 
 /// Estimates the distributions of process and measurement from `readings`. The process is normal; its variance is that
-/// of the values minus that of the measurement. The uncertainty of one measurement is the median over parts; that after
-/// a confirmation measurement is the median of the clearly smaller ones.
+/// of the values minus that of the measurement. The uncertainty of one measurement is the median over parts; the
+/// uncertainty after a confirmation measurement is the median of those clearly smaller.
 fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
     let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
     let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();
@@ -139,7 +139,8 @@ fn is_again(reading: &Reading, chance: Option<DecisionRisk>) -> bool {
     u.zip(usual).is_some_and(|(u, usual)| u < AGAIN * usual)
 }
 
-/// Counts false accepts and rejects over good and bad parts, beside the prediction for the same number of parts.
+/// Counts false accepts and false rejects over good and bad parts, and shows each count beside its prediction for the
+/// same number of parts.
 fn counted(which: &str, lots: &[Lot], (accept, reject): (f64, f64)) -> Vec<Figure> {
     let row = |what: &str, risk: f64, is: fn(&Part) -> bool| {
         let each: Vec<f64> = lots

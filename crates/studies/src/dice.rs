@@ -13,7 +13,7 @@ impl Dice {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
-    /// Returns an independent generator for another purpose of the same seed.
+    /// Splits off an independent generator, so that two purposes of one seed do not disturb each other.
     pub fn apart(&mut self) -> Self {
         Self::new(self.0.next_u64())
     }

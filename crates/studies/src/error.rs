@@ -1,8 +1,8 @@
 //! Errors of one parameter against the truth, over good parts.
 //!
-//! An error has the unit of its bar: percent of the true value for ohm, mV for volt, the unit of the parameter
-//! otherwise. A value covers its truth when `|value - truth| <= U`, with `U` expanded by k = 2; a value without an
-//! uncertainty does not.
+//! An error is in percent of the true value for a parameter in ohm, in mV for a parameter in volt, and in the unit of
+//! the parameter otherwise. The uncertainty U (k = 2) of a value covers the truth when `|value - truth| <= U`; a value
+//! without an uncertainty does not cover it.
 
 use super::figure::percent;
 use super::lot::{Lot, Part, Reading};
@@ -47,7 +47,7 @@ impl Errors {
         }
     }
 
-    /// Collects the listed errors, which have no uncertainty.
+    /// Collects the given errors; their values have no uncertainty and thus no coverage.
     fn listed(errors: impl Iterator<Item = f64>) -> Self {
         Self {
             spread: Spread::of(&errors.collect::<Vec<f64>>()),
@@ -65,7 +65,7 @@ impl Errors {
         self.spread.mean()
     }
 
-    /// Returns the root of the mean square: `rms^2 = mean^2 + sd^2 (n - 1) / n`.
+    /// Returns the rms error: `rms^2 = mean^2 + sd^2 (n - 1) / n`.
     pub fn rms(&self) -> Option<f64> {
         let mean = self.spread.mean()?;
         let n = self.n() as f64;

@@ -1,4 +1,4 @@
-//! Single parts behind a figure, each with the seed and the number that reproduce it.
+//! Parts worth a look behind a figure, each with the seed and the part number that reproduce it.
 
 use super::bins::bin_of;
 use super::lot::{Lot, Part};
@@ -6,8 +6,8 @@ use super::lot::{Lot, Part};
 /// Largest number of parts that a report names; the figures count all of them.
 const SHOWN: usize = 20;
 
-/// Names good parts that did not pass, other parts that did, defects in the bin of another cause, and rows that do not
-/// name the bin where the part lies.
+/// Lists good parts that did not pass, out-of-limits and defective parts that passed, defects in the bin of another
+/// cause, and rows that name another bin than the one where the part lies.
 pub fn outcome(lots: &[Lot]) -> Vec<String> {
     listed(lots, |part| {
         let right = match part.defect() {
@@ -19,7 +19,7 @@ pub fn outcome(lots: &[Lot]) -> Vec<String> {
     })
 }
 
-/// Names parts with a test longer than `test_s` or a cycle longer than `cycle_s`, seconds of rig time.
+/// Lists parts with a test longer than `test_s` or a cycle longer than `cycle_s`, seconds of rig time.
 pub fn slow(lots: &[Lot], test_s: f64, cycle_s: f64) -> Vec<String> {
     let over = |time: Option<f64>, bar: f64| time.is_some_and(|time| time > bar);
     let text = |time: Option<f64>| time.map_or_else(|| "-".into(), |time| format!("{time:.3}"));

@@ -1,9 +1,9 @@
-//! One figure and the bar that it must keep.
+//! One figure of a study, and its bar: the acceptance limit of its value.
 
 use quality::Spread;
 use serde_json::{Value, json};
 
-/// Range that a figure must keep; its ends belong to it, except for [`Bar::Below`].
+/// Acceptance limit of a figure: a range that includes its ends, except for [`Bar::Below`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bar {
     /// At most.
@@ -17,7 +17,7 @@ pub enum Bar {
 }
 
 impl Bar {
-    /// Returns whether a value keeps the bar; NaN never does.
+    /// Returns whether a value meets the bar; NaN never does.
     pub fn is_met(self, value: f64) -> bool {
         match self {
             Self::AtMost(high) => value <= high,
@@ -37,7 +37,7 @@ impl Bar {
         }
     }
 
-    /// Reads what [`Bar::text`] writes; `None` for any other text.
+    /// Parses a text of [`Bar::text`]; `None` for any other text.
     pub fn read(text: &str) -> Option<Self> {
         let number = |text: &str| text.trim().parse::<f64>().ok();
         if let Some(high) = text.strip_prefix("<=") {
@@ -64,9 +64,9 @@ pub struct Figure {
     pub value: Option<f64>,
     /// Unit of `value` and of `more`, unless a column names its own.
     pub unit: &'static str,
-    /// Further columns: key and number, no bar.
+    /// Further columns, key and number each; the bar does not apply to them.
     pub more: Vec<(&'static str, Option<f64>)>,
-    /// Bar of the value; `None` for a figure that only informs.
+    /// Bar of the value; `None` for a figure that is only information.
     pub bar: Option<Bar>,
 }
 
@@ -108,7 +108,7 @@ impl Figure {
         self
     }
 
-    /// Returns whether the value keeps the bar: `None` without a bar, false without a value.
+    /// Returns whether the value meets the bar: `None` without a bar, false without a value.
     pub fn met(&self) -> Option<bool> {
         self.bar
             .map(|bar| self.value.is_some_and(|value| bar.is_met(value)))

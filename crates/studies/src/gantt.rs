@@ -1,6 +1,8 @@
-//! One part through all stations, with its neighbours: the intervals in which each output was on, as SVG.
+//! A Gantt chart as SVG of one part through all stations, with its neighbours: the intervals in which each output was
+//! on.
 //!
-//! The intervals come from the journal of the simulated rig, at the terminals of the actuators. The followed part is dark.
+//! The intervals come from the journal of the simulated rig, at the terminals of the actuators. The followed part is
+//! drawn dark.
 
 use super::journal::{self, Entry};
 use super::order::Order;
@@ -12,12 +14,12 @@ use machine::rig::point::DigitalOut;
 use machine::rig::wiring::Wiring;
 use tempfile::TempDir;
 
-/// Story of a lot long enough that parts come before the followed part and after it.
+/// Script of a lot with parts before and after the followed part.
 const SCRIPT: &str = "# A chart of one part\nparts 8\n";
 /// Number of parts behind the followed one.
 const BEHIND: usize = 3;
 
-/// Rows from top to bottom: label, and outputs; a row is on while at least one of its outputs is.
+/// Rows of the chart from top to bottom: label, and outputs; a row is on while at least one of its outputs is on.
 const ROWS: [(&str, &[&str]); 8] = [
     ("escapement open", &[DigitalOut::EscapementRelease.name()]),
     ("pusher at the nest", &[DigitalOut::PusherExtend.name()]),

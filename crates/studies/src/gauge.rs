@@ -1,5 +1,5 @@
-//! The gauge study of the program itself (`run --study grr`): share of repeatability and reproducibility in the scatter of
-//! each characteristic. Three rigs measure the same parts three times each.
+//! The gauge study of the program itself (`run --study grr`): %GRR, the share of repeatability and reproducibility in
+//! the scatter of each characteristic. Three rigs measure the same parts three times each.
 
 use super::chart::Chart;
 use super::figure::Figure;
@@ -9,13 +9,13 @@ use anyhow::Context;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Shares at which AIAG calls a gauge acceptable, and no longer acceptable, percent.
+/// Limits of AIAG for %GRR, percent: up to the first a gauge is acceptable, beyond the second it is not.
 const AIAG_PCT: [f64; 2] = [10.0, 30.0];
 
 /// Runs the gauge study and makes the report.
 ///
 /// # Errors
-/// Fails when the lots cannot be run, or when the answer does not parse.
+/// Fails when the program cannot run the gauge study, or when its answer does not parse.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let db = folder.path().join("history.db");
@@ -33,7 +33,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("gauge", about, vec![rows], chart))
 }
 
-/// Reads the answer about one characteristic.
+/// Parses the answer line about one characteristic.
 fn row(line: &str, parts: u64) -> anyhow::Result<Figure> {
     let it: Value = serde_json::from_str(line)?;
     let name = it["param"]

@@ -1,8 +1,8 @@
 //! Speed of the history on a made-up file as large as weeks of production.
 //!
 //! The generator of `history generate` writes the file into a temporary directory. Every query runs as the program runs
-//! it and reads its rows to the end. All times are wall times. Most of the new file is in the page cache of the system, as
-//! the latest weeks of a plant are.
+//! it and reads its rows to the end. All times are wall times. Most of the new file is in the page cache of the
+//! operating system, as the latest weeks are on a rig in production.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
@@ -20,15 +20,15 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Number of parts of the larger exported sheet.
+/// Number of parts in the larger exported spreadsheet.
 const SHEET: u64 = 100_000;
-/// Number of parts of the smaller exported sheet; the larger one must not need much more memory.
+/// Number of parts in the smaller exported spreadsheet; the larger one must not need much more memory.
 const LESSER: u64 = 10_000;
-/// Number of parts that the study writes singly, each in a transaction of its own.
+/// Number of parts that the study writes one by one, each in its own transaction.
 const SINGLE: u64 = 500;
 /// Number of filter queries.
 const FILTERS: usize = 300;
-/// Interval between two readings of the memory of the export.
+/// Interval between two readings of the memory of the exporting process.
 const LOOK: Duration = Duration::from_millis(5);
 
 /// Writes the file, runs every query and makes the report.
@@ -79,7 +79,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     ))
 }
 
-/// Runs `work`, adds its wall time to `spent`, milliseconds, and returns its result.
+/// Runs `work`, appends its wall time in ms to `spent`, and returns its result.
 fn timed<T>(spent: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
     let began = Instant::now();
     let result = work();
@@ -120,7 +120,8 @@ fn measured(parameter: &Parameter) -> history::MeasurementRecord {
     }
 }
 
-/// Runs the filter queries by lot, verdict and value range: rejects over a wide range, good parts over a narrow one.
+/// Runs the filter queries by lot, verdict and value range: alternately rejects over a wide range and good parts over a
+/// narrow range.
 fn filters(archive: &Archive) -> anyhow::Result<Figure> {
     let lots = archive.lots(&Filter::default())?;
     let mut spent = Vec::new();
@@ -170,12 +171,13 @@ fn last_day(archive: &Archive) -> anyhow::Result<Figure> {
         .bar(Bar::AtMost(50.0)))
 }
 
-/// Query that reads the values behind statistics inside SQLite and returns only their sum: the least time of a pass.
+/// Query that reads the same values inside SQLite and returns only their sum: the least time of one pass over them.
 const PLAIN: &str = "SELECT total(m.value) FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE parameter.key = ?1 AND m.population = 'lot'";
 
-/// Returns a filter for the parts that passed: for these the history cannot use the packed values of whole runs.
+/// Returns a filter for the parts that passed. With it, the history must read single values instead of the packed
+/// values of whole runs.
 fn good() -> Filter {
     Filter {
         verdict: Some("pass".to_owned()),

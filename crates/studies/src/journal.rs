@@ -1,4 +1,5 @@
-//! Stories with a journal: this program plays a script and writes down when each output of the rig changed.
+//! Scripted lots with a journal: this program plays a script (`relayrig story`) and records when each output of the rig
+//! changed.
 
 use super::order::{Order, finished};
 use anyhow::Context;
@@ -15,7 +16,7 @@ pub enum Entry {
         t_us: u64,
         /// Name of the module.
         module: String,
-        /// Bit n = channel n.
+        /// States of the outputs: bit n is channel n, 1 is on.
         bits: u16,
     },
     /// A fault of the script has begun.

@@ -1,12 +1,13 @@
-//! `kill -9` of a running lot at random instants, and the rows that the history holds afterwards.
+//! Kills a running lot at random instants (`kill -9`) and checks the rows that the history holds afterwards.
 //!
-//! Every round starts a lot in a process of its own, ends it by SIGKILL after a random time (before the first part, in
+//! Every round starts a lot in its own process, kills it with SIGKILL after a random time (before the first part, in
 //! the middle of a transaction, between beam and row), opens the same history and compares its rows with the parts that
-//! the process printed. The process prints a part when the beam of its bin confirms it, and the gripper opens only over
-//! durable rows. Every printed part must therefore have one row with the same verdict and bin, and curves if it failed;
-//! the numbers of the parts must have no gap; and the file must be undamaged. One round of three counts the time from
-//! the start of the process, the others from the first printed part, so that a busy machine does not kill every lot too
-//! early. All rounds share one history. After every tenth round a short lot runs to its end in it.
+//! the process printed. The process prints a part when the light beam of its bin confirms it, and the gripper opens
+//! only after the row is durable. Every printed part must therefore have one row with the same verdict and bin, and
+//! curves if it failed; the numbers of the parts must have no gap; and the file must be undamaged. One round in three
+//! counts the time to the kill from the start of the process, the others from the first printed part; otherwise a busy
+//! machine would see every lot killed before its first part. All rounds share one history. After every tenth round a
+//! short lot must run to its end in it.
 
 use super::chart::Chart;
 use super::dice::Dice;
@@ -23,13 +24,13 @@ use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Longest time until the kill, ms; a lot prints about thirty parts in it.
+/// Longest time to the kill, ms; a lot prints about thirty parts in this time.
 const LONGEST_MS: u64 = 1_500;
-/// One round of this many counts the time to the kill from the start of the process.
+/// One round in this number counts the time to the kill from the start of the process.
 const FROM_START: u64 = 3;
-/// Longest wait for the first part of a lot; then the kill follows all the same.
+/// Longest wait for the first part of a lot; after it, the study kills the lot all the same.
 const FIRST_PART_TIMEOUT: Duration = Duration::from_secs(30);
-/// Interval at which the study looks for the first part.
+/// Interval at which the study polls for the first part.
 const LOOK: Duration = Duration::from_millis(5);
 /// Number of parts of a lot: more than it can test before the kill.
 const ENDLESS: u64 = 1_000_000;
@@ -213,8 +214,8 @@ fn has_curves(archive: &Archive, row: &Part) -> anyhow::Result<bool> {
     Ok(shown.iter().all(|it| !it.curves.is_empty()))
 }
 
-/// Returns true when printed part and row have the same verdict and bin, and the recorded landing, if any, is in this
-/// bin.
+/// Returns true when the printed part and its row agree on verdict and bin, and when the row records no landing in
+/// another bin.
 fn is_same(row: &Part, reported: &Value) -> bool {
     reported["verdict"] == row.verdict.as_str()
         && reported["bin"] == row.bin.as_deref().unwrap_or_default()

@@ -1,17 +1,18 @@
-//! Reproducible figures of the rig, each beside the bar that it must keep.
+//! Reproducible figures of the rig, each beside its bar: the limit that the figure must meet.
 //!
-//! A study runs lots on the simulated rig in virtual time, each in a process of this very program, compares the rows
-//! with the truth about the parts (`--truth`), and prints the figures.
+//! A study runs lots on the simulated rig in virtual time, each in a process of this very program, compares the rows of
+//! the parts with the truth about the parts (`--truth`), and prints the figures.
 //!
-//! - Lot `n` of a study runs with seed `n`, so that one `relayrig run` repeats the lot of a figure.
-//! - A good part is one without a defect; only good parts count for errors and coverage. A good part drawn beyond a
-//!   limit is rightly rejected: the figures about bins count it neither as good nor as defective, and a row of its own
-//!   counts these parts.
+//! - Lot `n` of a study runs with seed `n`, so that one `relayrig run` repeats the lot behind a figure.
+//! - A world is a file that sets the properties of the simulated rig: parts, defects, errors of instruments.
+//! - A good part is one without a defect; only good parts count for errors and coverage. A good part whose true value
+//!   lies beyond a limit is rightly rejected: the figures about bins count it neither as good nor as defective; a row
+//!   of its own counts such parts.
 //! - A figure without a value (nothing measured, nothing reported) misses its bar.
-//! - No figure mixes rig time and wall time: wall time appears in `collision`, `history`, `pace`, `storm` and
-//!   `transient` only.
+//! - No figure mixes rig time (time of the simulated rig) and wall time: wall time appears only in `collision`,
+//!   `history`, `pace`, `storm` and `transient`.
 //!
-//! `collision` and `transient` run no lot: the one compares ways to check a move with the exact truth, the other
+//! `collision` and `transient` run no lot: `collision` compares ways to check a move with the exact truth, `transient`
 //! integrates the relay model of the simulated rig.
 //!
 //! [`figures`] runs a plan of studies and benchmarks and writes their figures as one document.

@@ -1,5 +1,5 @@
-//! Memory, open files and rows of `serve` over many lots, which the study orders one after another, as a person does at
-//! the page.
+//! Memory, open files and rows of `serve` over many lots. The study orders the lots one after another, as a person does
+//! on the page.
 //!
 //! The program runs in a process of its own. The first lot fills caches and buffers; after it, memory and open files
 //! must not grow. Every ordered part must have one row.
@@ -21,11 +21,11 @@ use tempfile::TempDir;
 
 /// Greatest growth of the resident memory after the first lot, percent.
 const GROWTH_PCT: f64 = 1.0;
-/// Pause between two looks at the view.
+/// Pause between two polls of the view.
 const LOOK: Duration = Duration::from_millis(100);
 /// Longest wait for a state of the machine.
 const STATE_TIMEOUT: Duration = Duration::from_secs(120);
-/// Longest wait for one part of a lot.
+/// Longest wait per part of a lot.
 const PART_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Memory and open files of the program.
@@ -121,7 +121,7 @@ fn footprint(process: u32) -> anyhow::Result<Footprint> {
     })
 }
 
-/// The program with its page, and a session of an engineer.
+/// A running `serve` process, and the session of an engineer on its page.
 struct Served {
     process: Child,
     address: String,
@@ -136,7 +136,7 @@ impl Drop for Served {
 }
 
 impl Served {
-    /// Starts the program and logs in with the password that a first start prints.
+    /// Starts the program and sets up its first user with the set-up code that a first start prints.
     fn start(order: &Order, db: &Path) -> anyhow::Result<Self> {
         let mut command = order.command(db, "info");
         command.args([
@@ -218,7 +218,7 @@ impl Served {
         Ok(())
     }
 
-    /// Waits for a view that passes `test`.
+    /// Polls the view until it passes `test`; fails after `timeout`.
     fn until(&mut self, timeout: Duration, test: impl Fn(&Value) -> bool) -> anyhow::Result<Value> {
         let began = Instant::now();
         while began.elapsed() < timeout {

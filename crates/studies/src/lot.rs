@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 /// One judged part: its row, and its truth.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Part {
-    /// Order of entering the nest, from 1.
+    /// Number of the part in the order of entering the nest, from 1.
     pub seq: u64,
     /// `pass`, `fail` or `void`.
     pub verdict: String,
@@ -26,14 +26,14 @@ pub struct Part {
     values: BTreeMap<String, Option<f64>>,
     #[serde(default)]
     uncertainty: BTreeMap<String, Option<f64>>,
-    /// Rig time from probes up to verdict, seconds.
+    /// Rig time from raised probes to the verdict, seconds.
     pub test_s: Option<f64>,
-    /// Rig time from the nest exit of the part before to that of this part, seconds.
+    /// Rig time from the nest exit of the previous part to that of this part, seconds.
     pub cycle_s: Option<f64>,
-    /// Pieces of the test time: name of the piece to seconds of rig time.
+    /// Rig time of each piece of the test: name of the piece, and seconds.
     #[serde(default)]
     pub spent: BTreeMap<String, f64>,
-    /// Rig time of each stage of the test: name of the stage to seconds.
+    /// Rig time of each stage of the test: name of the stage, and seconds.
     #[serde(default)]
     pub stages: BTreeMap<String, f64>,
     /// True when a true value lies beyond a limit of the recipe, defect or not.
@@ -54,7 +54,7 @@ pub struct Truth {
     values: BTreeMap<String, Value>,
 }
 
-/// Each parameter with the range that the recipe admits, in the unit of the parameter.
+/// Each parameter with the range within the limits of the recipe, in the unit of the parameter.
 pub type Admitted = Vec<(Parameter, RangeInclusive<f64>)>;
 
 impl Truth {
@@ -88,12 +88,12 @@ impl Part {
         self.truth.as_ref()?.defect.as_deref()
     }
 
-    /// Returns the bin where the body came to rest; `None` for a body elsewhere, or without a truth.
+    /// Returns the bin where the body came to rest; `None` when it lies elsewhere, or without a truth.
     pub fn landed_in(&self) -> Option<&str> {
         self.truth.as_ref()?.landed_in.as_deref()
     }
 
-    /// Returns true when the row names the pass bin or the body lies in it.
+    /// Returns true when the row names the pass bin, or when the body lies in it.
     pub fn has_passed(&self) -> bool {
         self.bin == "pass" || self.landed_in() == Some("pass")
     }
@@ -131,7 +131,7 @@ pub struct Summary {
     pub alarms: u64,
     /// Writes to any EEPROM during the lot; `None` when the run did not count them.
     pub eeprom_writes: Option<u64>,
-    /// Hash of all bytes on each line, by name of the line.
+    /// Hash of all bytes on each line, by the name of the line.
     #[serde(default)]
     pub bytes: BTreeMap<String, String>,
     /// Promises of rig and recipe that the run found broken.
@@ -150,7 +150,7 @@ pub struct Summary {
 pub struct BrokenPromise {
     /// Name of the promise.
     pub promise: String,
-    /// Number of parts of the lot judged before the run found that.
+    /// Number of parts of the lot judged before the run found the promise broken.
     pub after_parts: u64,
 }
 
@@ -165,7 +165,7 @@ pub struct Lot {
     pub unrecorded: u64,
     /// Figures of the lot as a whole.
     pub summary: Summary,
-    /// Lines logged as errors; bodies that touched are among them.
+    /// Number of log lines at level error; each touch of two bodies is one of them.
     pub errors_logged: u64,
     /// Wall time of the whole process, start and calibration included, seconds.
     pub wall_s: f64,

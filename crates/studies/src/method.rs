@@ -1,7 +1,7 @@
-//! Comparison of measuring methods: a row of error and a row of seconds for each, and their plot.
+//! Comparison of measuring methods: for each, a row of error with its seconds, and a bar in the plot.
 //!
-//! Seconds are the rig time that the stages of the method take, as a mean over good parts. Error is the median over lots of
-//! the rms against the truth, bias the median over lots of the mean error, max the greatest error of any part.
+//! Seconds are the mean rig time of the method's stages over good parts. Error is the median over lots of the rms error
+//! against the truth, bias the median over lots of the mean error, max the greatest error of any part.
 
 use super::chart::Chart;
 use super::error::{Pooled, unit};
@@ -13,7 +13,7 @@ use super::variant::Variant;
 use machine::dut::em_relay::Parameter;
 use quality::Spread;
 
-/// Baud rates of the comparison; the bars apply to the first.
+/// Baud rates of the comparison; the bars apply only to the first.
 pub const BAUDS: [u32; 2] = [115_200, 9600];
 
 /// A parameter and the stages of the test that measure it.
@@ -23,7 +23,7 @@ pub struct TimedParameter {
     pub parameter: Parameter,
     /// Stages whose time counts for the parameter.
     pub stages: &'static [&'static str],
-    /// Further time that the parameter costs and that no stage contains, seconds.
+    /// Time that the parameter costs outside of its stages, seconds.
     pub more_s: f64,
 }
 
@@ -37,7 +37,7 @@ impl TimedParameter {
         }
     }
 
-    /// Returns the seconds of the stages over good parts that have at least one of them.
+    /// Returns statistics of the rig time of the stages, seconds, over the good parts that ran at least one of them.
     pub fn seconds(&self, lots: &[Lot]) -> Spread {
         let time = |part: &Part| {
             let stages = self.stages.iter().filter_map(|it| part.stages.get(*it));
@@ -54,7 +54,7 @@ impl TimedParameter {
         self.row_of(name, lots, &errors)
     }
 
-    /// Returns a row as [`Self::row`] does, but from these errors instead of those of the parameter's own value.
+    /// Returns a row as [`Self::row`] does, but with the given errors instead of those of the parameter.
     pub fn row_of(&self, name: impl Into<String>, lots: &[Lot], errors: &Pooled) -> Figure {
         Figure::new(name, errors.n(), errors.median_rms(), unit(self.parameter))
             .with("bias", errors.median_bias())
@@ -71,7 +71,7 @@ impl TimedParameter {
     }
 }
 
-/// Runs the lots of a variant.
+/// Runs the lots of the order under a variant of the configuration.
 ///
 /// # Errors
 /// Fails when the configuration cannot be changed, or when a lot cannot be run.
@@ -79,7 +79,8 @@ pub fn lots(variant: &Variant, order: &Order) -> anyhow::Result<Vec<Lot>> {
     variant.of(order)?.order.run_all()
 }
 
-/// Makes the report of a study that compares methods; its plot has a bar for every row of the first `drawn` groups.
+/// Makes the report of a study that compares methods; the chart has a bar for every row of the first `drawn` groups,
+/// and lines at `marks`.
 pub fn report(
     study: &'static str,
     order: &Order,

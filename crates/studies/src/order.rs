@@ -1,4 +1,5 @@
-//! The lots that a study runs: each in a process of this very program, with a history in a temporary folder.
+//! The order of a study: the lots to run, each in its own process of this very program, with a history in a temporary
+//! folder.
 
 use super::lot::{Admitted, Lot};
 use super::pool::{self, LOTS_AT_ONCE};
@@ -12,7 +13,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use tempfile::TempDir;
 
-/// Exit status of a lot that an alarm ended; its rows count like those of any other.
+/// Exit status of a lot that an alarm ended; the study uses its rows like those of any other lot.
 const RIG_TROUBLE: i32 = 3;
 
 /// Lots to run.
@@ -31,13 +32,13 @@ pub struct Order {
     pub faults: Vec<String>,
     /// Number of lots.
     pub lots: u64,
-    /// First seed; only the study `storm` reads it.
+    /// First seed of the study `storm`, and the seed of the study `gauge`.
     pub from: u64,
     /// The one seed to run, `None` for all; only the study `storm` reads it.
     pub seed: Option<u64>,
     /// Parts of each lot.
     pub parts: u64,
-    /// Lots in worlds that keep every promise; only `promises` reads it.
+    /// Number of lots in worlds that keep every promise; only the study `promises` reads it.
     pub kept: u64,
     /// The one promise to break, `None` for all; only the study `promises` reads it.
     pub term: Option<String>,
@@ -86,7 +87,7 @@ impl Order {
     /// Runs a lot for each seed, `at_once` processes at a time; returns the lots in the order of the seeds.
     ///
     /// # Errors
-    /// Fails with the first lot that does not start, ends with bad input or writes unreadable rows.
+    /// Fails with the first lot that does not start, ends with an unexpected status, or writes unreadable rows.
     pub fn run(&self, seeds: &[u64], at_once: usize) -> anyhow::Result<Vec<Lot>> {
         let named = |seed: &u64| format!("the lot with seed {seed}");
         pool::map(seeds, at_once, |seed| {
@@ -129,8 +130,8 @@ impl Order {
         command
     }
 
-    /// Returns the command `action` on the simulated rig, with recipe, world and faults of the order and answers as
-    /// JSON; errors alone are logged.
+    /// Returns the command `action` on the simulated rig, with recipe, world and faults of the order. It answers in
+    /// JSON and logs only errors.
     pub fn rig_command(&self, action: &str, db: &Path, seed: u64) -> Command {
         let mut command = self.command(db, "error");
         command.args([action, "--sim", "--json", "--recipe", &self.recipe.name]);
@@ -170,7 +171,7 @@ pub fn finished(command: &mut Command, accepted: &[i32]) -> anyhow::Result<Outpu
     Ok(output)
 }
 
-/// Returns a figure of `/proc/PID/status` in kB, such as `VmRSS` (resident memory now) and `VmHWM` (its peak).
+/// Returns a value of `/proc/PID/status` in kB, such as `VmRSS` (current resident memory) or `VmHWM` (its peak).
 pub fn memory_kb(process: u32, key: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find(|line| line.starts_with(key))?;

@@ -38,7 +38,7 @@ impl Report {
         }
     }
 
-    /// Returns the same report with these notes.
+    /// Returns the report with these notes.
     pub fn noted(self, notes: Vec<String>) -> Self {
         Self { notes, ..self }
     }
@@ -57,7 +57,7 @@ impl Report {
         missed.map(|figure| figure.name.as_str()).collect()
     }
 
-    /// Returns aligned tables, the notes, and a last line that names the missed bars.
+    /// Returns the report as text: aligned tables, the notes, and a last line that names the missed bars.
     pub fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.study, self.about);
         for group in self.groups.iter().filter(|group| !group.is_empty()) {
@@ -95,7 +95,7 @@ impl Report {
         text
     }
 
-    /// Returns all figures as CSV under one header, numbers in full.
+    /// Returns all figures as CSV under one header, with all digits.
     pub fn csv(&self) -> String {
         let all: Vec<Figure> = self.figures().cloned().collect();
         let mut bytes = Vec::new();
@@ -106,7 +106,7 @@ impl Report {
     }
 }
 
-/// Returns the cells of header and rows; further columns follow in the order of their first appearance.
+/// Returns the cells of header and rows; further columns appear in the order of their first use.
 fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>> {
     let mut keys: Vec<&str> = Vec::new();
     for (key, _) in figures.iter().flat_map(|figure| &figure.more) {

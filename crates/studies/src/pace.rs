@@ -1,7 +1,7 @@
 //! Parts per second of wall time, and whether the same seed gives the same bytes.
 //!
-//! The study runs the same lot at least twice, one process at a time. The wall time is that of the whole process, with
-//! start, calibration, reference parts and history.
+//! The study runs the same lot at least twice, one process at a time. The wall time is that of the whole process,
+//! including start, calibration, reference parts and history.
 
 use super::bins;
 use super::chart::Chart;
@@ -62,8 +62,8 @@ fn rate(rates: &[f64]) -> Figure {
     .bar(Bar::AtLeast(PARTS_PER_SECOND))
 }
 
-/// Counts runs whose bytes differ from those of the run before; the figure has no value when a run reports no bytes, or
-/// when there is only one run.
+/// Counts the runs whose bytes on the lines differ from those of the previous run. The figure has no value when a run
+/// reports no bytes, or when there is only one run.
 pub fn same_bytes(lots: &[Lot]) -> Figure {
     let have_bytes = lots.iter().all(|lot| !lot.summary.bytes.is_empty());
     let differ = lots
@@ -80,7 +80,7 @@ pub fn same_bytes(lots: &[Lot]) -> Figure {
     .bar(Bar::AtMost(0.0))
 }
 
-/// Returns the mean wall seconds of each entry of the lots' profiles, greatest first; empty without profiles.
+/// Returns the mean wall time of each activity over the lots, seconds, greatest first; empty when no lot has a profile.
 pub fn profile(lots: &[Lot]) -> Vec<Figure> {
     let profiles = || lots.iter().map(|lot| &lot.summary.wall_profile);
     let names: BTreeSet<&String> = profiles().flat_map(BTreeMap::keys).collect();

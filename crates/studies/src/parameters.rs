@@ -1,12 +1,11 @@
-//! The studies with one figure per parameter: accuracy and coverage. Below the figures of the parameters the report
-//! shows where the parts went, alarms, errors and EEPROM writes, and the parts worth a look.
+//! The studies with one figure per parameter: accuracy and coverage. Below these figures the report shows in which bins
+//! the parts ended, the alarms, errors and EEPROM writes, and the parts worth a look.
 //!
-//! - Accuracy: the limit ([`Bar`]) applies to the rms error over good parts, as a median over lots. Further columns
-//!   have the worst lot, the bias (median over lots of the mean error), the greatest error of any part and the pooled
-//!   coverage.
+//! - Accuracy: the bar applies to the rms error over good parts, as a median over lots. Further columns have the worst
+//!   lot, the bias (median over lots of the mean error), the greatest error of any part and the pooled coverage.
 //! - Coverage: how often the stated uncertainty (k = 2) covers the truth, pooled over good parts of many lots. Every
-//!   lot has a rig of its own, which samples the errors that stay the same within a lot. Too high is as wrong as too
-//!   low: an uncertainty that always covers the truth is stated too large.
+//!   lot has its own rig, so that the lots sample the errors that stay the same within a lot. Too high is as wrong as
+//!   too low: an uncertainty that always covers the truth is stated too large.
 
 use super::bins;
 use super::chart::Chart;
@@ -24,7 +23,7 @@ const COVERAGE_PCT: (f64, f64) = (93.0, 98.0);
 /// Left end of the chart of coverage, percent.
 const CHART_FROM_PCT: f64 = 80.0;
 
-/// Compares the error of every parameter with the error that it may have.
+/// Compares the rms error of every parameter with its bar.
 ///
 /// # Errors
 /// Fails for a part without a coil, or when a lot cannot be run.
@@ -45,7 +44,8 @@ pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
     study("accuracy", order, row, share, chart)
 }
 
-/// Returns the greatest accepted rms error in [`unit()`]; that of a threshold is a share of the nominal voltage.
+/// Returns the greatest permitted rms error in [`unit()`]; for a threshold it is a share of `nominal_v`, the nominal coil
+/// voltage.
 fn allowed(parameter: Parameter, nominal_v: f64) -> f64 {
     let allowed = parameter.facts().allowed_rms;
     match parameter.facts().definition.unit {
@@ -73,7 +73,7 @@ pub fn coverage(order: &Order) -> anyhow::Result<Report> {
     study("coverage", order, row, |_, percent| percent, chart)
 }
 
-/// Runs the lots and makes the report; `length` turns the figure of a parameter into the length of its bar in `chart`.
+/// Runs the lots and makes the report; `length` returns the length of the bar in `chart` for the figure of a parameter.
 fn study(
     study: &'static str,
     order: &Order,

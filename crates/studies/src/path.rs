@@ -1,10 +1,10 @@
-//! The critical path of a cycle, and how near the line comes to it.
+//! The critical path of a cycle, and how close the line comes to it.
 //!
 //! The nest is never idle between one nest exit and the next: the pusher pushes the next part in, the jaws clamp it
 //! while the pusher returns, the probes rise, the test runs, the fingers grip while the probes go down, the jaws open
-//! and z lifts the part. Each of these strokes waits for the one before; all others (escapement, the way to the bin and
-//! back, z down) overlap with them. No overlap can shorten the sum of the mean travel times of the path and the mean
-//! test.
+//! and z lifts the part. Each of these strokes waits for the previous one; all others (escapement, the way to the bin
+//! and back, z down) overlap with them. No overlap can make a cycle shorter than the sum of the mean travel times of
+//! the path and the mean test.
 
 use super::figure::{self, Bar, Figure};
 use super::lot::{Lot, Part};
@@ -12,12 +12,12 @@ use super::order::Order;
 use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 
-/// Bar of the parts per hour with the default recipe: at least this many.
+/// Least number of parts per hour with the default recipe.
 const PARTS_PER_HOUR: f64 = 1850.0;
 /// The line must make at least this share of the parts per hour that the critical path permits.
 const SHARE: f64 = 0.95;
 
-/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes the longer one.
+/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes it takes the longer time.
 fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
     [
         ("path: pusher to the nest", mechanism.pusher_ms),

@@ -1,20 +1,20 @@
-//! Items worked on by several threads, with a progress bar; the results keep the order of the items.
+//! Runs work for many items on several threads, with a progress bar; the results keep the order of the items.
 
 use app::progress::{PIECES, progress};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Number of lots that run at a time in a study whose figures contain no wall time.
+/// Number of lots that run simultaneously in a study whose figures contain no wall time.
 pub const LOTS_AT_ONCE: usize = 2;
 
-/// Returns the number of threads that this machine runs at a time.
+/// Returns the number of threads that this machine runs simultaneously.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Calls `work` for every item on at most `threads` threads. After a failure no further item is begun.
+/// Calls `work` for every item on at most `threads` threads. After a failure it begins no further item.
 ///
 /// # Errors
-/// Fails when `work` fails for an item, with the first failure in the order of the items.
+/// Fails with the first failure of `work`, in the order of the items.
 pub fn map<I: Sync, T: Send>(
     items: &[I],
     threads: usize,

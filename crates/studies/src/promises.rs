@@ -1,12 +1,12 @@
 //! Study `promises`: whether a rig notices that it breaks a promise, and if not, whether the stated uncertainty still
 //! covers the truth.
 //!
-//! A promise is a value of `rig.toml` or of the recipe on which the uncertainty rests. For each term of [`TERMS`] a world
-//! multiplies one promised value by [`FACTOR`] and keeps the others. A term passes when it meets one of two bars: at least
-//! [`NOTICED_PCT`] of its lots notice the broken promise, or the uncertainty of every parameter covers at least
-//! [`COVERED_PCT`] of its values. The report then sets no bar for the other figure. A run notices the broken promise when
-//! it raises the alarm of a promise or refuses the calibration. Worlds that keep every promise give the share of lots with
-//! a false alarm.
+//! A promise is a value of `rig.toml` or of the recipe on which the uncertainty rests. For each term of [`TERMS`] a
+//! world multiplies one promised value by [`FACTOR`] and keeps the others. A term passes when it meets one of two bars:
+//! at least [`NOTICED_PCT`] of its lots notice the broken promise, or the uncertainty of every parameter covers at
+//! least [`COVERED_PCT`] of its values. When one bar is met, the report sets no bar for the other figure. A lot notices
+//! the broken promise when its run raises the alarm of a promise or refuses the calibration. Worlds that keep every
+//! promise give the share of lots with a false alarm.
 
 use super::chart::Chart;
 use super::error::Pooled;
@@ -24,7 +24,7 @@ use statrs::distribution::{Beta, ContinuousCDF};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// Multiple of the promised value in a world that breaks it.
+/// Factor by which a world multiplies the promised value that it breaks.
 const FACTOR: f64 = 2.0;
 /// Least share of lots that notice the broken promise, percent.
 const NOTICED_PCT: f64 = 95.0;
@@ -32,7 +32,7 @@ const NOTICED_PCT: f64 = 95.0;
 const COVERED_PCT: f64 = 92.0;
 /// Greatest permitted share of lots with a false alarm, percent.
 const FALSE_ALARMS_PCT: f64 = 0.5;
-/// Confidence of the upper bound of the share of false alarms, 0 to 1.
+/// Confidence level of the upper bound of the share of false alarms, 0 to 1.
 const CONFIDENCE: f64 = 0.95;
 
 /// Each promise of `rig.toml` that a world can break by more scatter or a wider tolerance: its dotted path, whose last
@@ -102,7 +102,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("promises", about, groups, chart).noted(notes.collect()))
 }
 
-/// Returns the change of the world for each term that the order wants: name of the term, key of the world, value.
+/// Returns the change of the world for each term to study: name of the term, key of the world, value.
 fn changes(order: &Order) -> anyhow::Result<Vec<(&'static str, &'static str, f64)>> {
     let rig = table(&order.config.join("rig.toml"))?;
     let mut all = Vec::new();
@@ -121,7 +121,8 @@ fn changes(order: &Order) -> anyhow::Result<Vec<(&'static str, &'static str, f64
     Ok(all)
 }
 
-/// Returns the change of a world whose closures scatter more than the recipe expects; `None` for another kind.
+/// Returns the change for a world whose closures scatter more than the recipe expects; `None` for a kind of part
+/// without contacts.
 fn closures(order: &Order) -> Option<(&'static str, &'static str, f64)> {
     match &order.recipe.device {
         DeviceRecipe::EmRelay(relay) => {
@@ -165,7 +166,7 @@ impl BrokenWorld {
         ]
     }
 
-    /// Returns the parameter with the least coverage over all lots, percent.
+    /// Returns the parameter with the least coverage over all lots, and that coverage in percent.
     fn least_covered(&self) -> (Option<Parameter>, Option<f64>) {
         let of = |parameter: &Parameter| {
             let coverage = Pooled::of(*parameter, &self.lots).coverage_pct()?;
@@ -175,7 +176,7 @@ impl BrokenWorld {
         each.min_by(|a, b| a.1.total_cmp(&b.1)).unzip()
     }
 
-    /// Names the parameter with the least coverage, and the alarms by promise.
+    /// Returns a note with the least covered parameter and the number of alarms for each promise.
     fn note(&self) -> String {
         let least = self
             .least_covered()
@@ -197,7 +198,7 @@ fn noticed_after(lot: &Lot) -> Option<f64> {
     after.or(refused).map(|parts| parts as f64)
 }
 
-/// Counts the lots by the promise that they found broken.
+/// Returns, for each promise, the number of lots that found it broken, as text.
 fn alarms(lots: &[Lot]) -> String {
     let mut counts: BTreeMap<&str, u64> = BTreeMap::new();
     for lot in lots {
@@ -215,7 +216,7 @@ fn alarms(lots: &[Lot]) -> String {
     }
 }
 
-/// Counts the lots with a false alarm, with an upper bound of their share.
+/// Counts the lots with a false alarm; adds an upper bound of their share.
 fn false_alarms(lots: &[Lot]) -> Vec<Figure> {
     let n = lots.len() as u64;
     let false_alarms = lots.iter().filter(|lot| noticed_after(lot).is_some());
@@ -231,7 +232,7 @@ fn false_alarms(lots: &[Lot]) -> Vec<Figure> {
     }
 }
 
-/// Returns the one-sided upper bound of a share by Clopper and Pearson, from `count` of `n`.
+/// Returns the one-sided upper confidence bound (Clopper and Pearson) of a share, from `count` of `n`.
 fn upper_bound(count: u64, n: u64) -> f64 {
     let beta = Beta::new(count as f64 + 1.0, n.saturating_sub(count) as f64);
     beta.map_or(1.0, |it| it.inverse_cdf(CONFIDENCE))

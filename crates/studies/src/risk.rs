@@ -11,7 +11,8 @@ use std::ops::RangeInclusive;
 
 /// Number of steps of the integral over +-8 standard deviations of the process.
 const STEPS: u32 = 40_000;
-/// Number of steps of the integral over +-6 standard deviations of the mean after the confirmation measurement.
+/// Number of steps of the integral over +-6 standard deviations of the mean of all readings after a confirmation
+/// measurement.
 const AGAIN_STEPS: u32 = 240;
 
 /// Distributions of a process and of its measurement, in the unit of the parameter.
@@ -23,7 +24,7 @@ pub struct DecisionRisk {
     pub sd: f64,
     /// Standard uncertainty of one measurement.
     pub u: f64,
-    /// Standard uncertainty of the mean after a confirmation measurement; `None` when no part had one.
+    /// Standard uncertainty of the mean of all readings after a confirmation measurement; `None` when no part had one.
     pub again: Option<f64>,
 }
 
@@ -87,7 +88,7 @@ impl DecisionRisk {
     }
 }
 
-/// Returns the probability that `about` plus noise lies from `low` to `high`.
+/// Returns the probability that `about` plus `noise` lies between `low` and `high`.
 fn within(noise: &Normal, low: f64, high: f64, about: f64) -> f64 {
     (noise.cdf(high - about) - noise.cdf(low - about)).max(0.0)
 }

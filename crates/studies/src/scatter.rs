@@ -1,7 +1,7 @@
-//! Points and curves as SVG, both axes logarithmic.
+//! A scatter plot of points and curves as SVG, both axes logarithmic.
 //!
-//! Lengths are px. The plot puts a point whose value is below the lowest line on that line. When a method gives wrong
-//! verdicts, its point is hollow and its label states their number.
+//! Lengths are px. A point whose value lies below the lowest grid line appears on that line. A point of a method that
+//! gives wrong verdicts is hollow, and its label states their number.
 
 use history::report::svg::{Svg, text_width};
 
@@ -14,9 +14,9 @@ pub struct Point {
     pub x: f64,
     /// Value along the y axis, 0 or more.
     pub y: f64,
-    /// Number of wrong verdicts; above 0 the point is hollow, so that speed does not hide wrong answers.
+    /// Number of wrong verdicts; a point with any is hollow, so that speed does not hide wrong answers.
     pub wrong: u64,
-    /// Number of the series, which chooses the colour.
+    /// Number of the series; it selects the colour.
     pub series: usize,
 }
 
@@ -31,9 +31,9 @@ pub struct Scatter {
     pub y_title: String,
     /// Points, in the order of their lines.
     pub points: Vec<Point>,
-    /// Whether a line joins neighbours of one series.
+    /// Whether a line joins consecutive points of one series.
     pub is_joined: bool,
-    /// Value of the lowest line, labelled `less`; `None` lets the points choose it.
+    /// Value of the lowest grid line, labelled `less`; `None` derives it from the points.
     pub least: Option<f64>,
 }
 
@@ -48,7 +48,7 @@ const COLOURS: [&str; 6] = [
 ];
 /// Height of a label, px.
 const LINE: f64 = 15.0;
-/// Distance from the foot of a label to the line on which its letters stand, px.
+/// Distance from the bottom of a label to its baseline, px.
 const DESCENT: f64 = 3.0;
 /// Radius of a point, px.
 const RADIUS: f64 = 5.0;
@@ -140,7 +140,7 @@ impl Scatter {
     }
 }
 
-/// A rectangle that a point or a label covers.
+/// A rectangle that a point or a label already covers.
 #[derive(Debug, Clone, Copy)]
 struct Area {
     left: f64,
@@ -161,8 +161,8 @@ impl Area {
         }
     }
 
-    /// Returns the place of a label of this width: the one nearest to the height of its point, right before left, that
-    /// covers nothing and does not leave the plot; above its point when there is none.
+    /// Returns the area for a label of this width beside its point: the free area inside the plot nearest to the height
+    /// of the point, right before left. Without a free area the label goes above its point.
     fn beside([x, y]: [f64; 2], width: f64, taken: &[Self]) -> Self {
         let label = |step: f64, left: f64| {
             let top = y - LINE / 2.0 + step * LINE / 2.0;
@@ -196,7 +196,7 @@ impl Area {
     }
 }
 
-/// A logarithmic axis of whole decades between two coordinates.
+/// A logarithmic axis over whole decades, between two px coordinates.
 struct Axis {
     low: i32,
     high: i32,
@@ -236,7 +236,7 @@ fn colour(point: &Point) -> &'static str {
     COLOURS[point.series % COLOURS.len()]
 }
 
-/// Returns the label of a decade: `0.01`, `10`, and `1e-7` below 0.001 or above 100000.
+/// Returns the label of a decade: `0.01` or `10`, but `1e-7` below 0.001 and above 100000.
 fn power(decade: i32) -> String {
     match decade {
         -3..=0 => format!("{:.*}", decade.unsigned_abs() as usize, 10f64.powi(decade)),

@@ -1,10 +1,11 @@
 //! Reaction time of motion outputs to the emergency stop, pressed at every instant of a cycle and of homing.
 //!
-//! Every lot is a story (`relayrig story`) that presses the stop again and again, each time a little later after a part
-//! leaves the nest, or after the reset of a line that was stopped in the middle of a test; then it releases the stop,
-//! clears, resets and starts anew. The journal of the simulated rig gives the instants at which the emergency-stop
-//! contact opens and the last motion output goes off. The bound of the reaction time follows from `rig.toml` and holds
-//! for any delay or loss of one transaction; every second lot therefore runs with replies at the end of their timeout.
+//! Every lot is a script (`relayrig story`) that presses the stop again and again, each time a little later: after a
+//! part leaves the nest, or after the reset of a line that was stopped in the middle of a test. Each time it releases
+//! the stop, clears, resets and starts the line again. The journal of the simulated rig gives the instants at which the
+//! emergency-stop contact opens and the last motion output goes off. The bound of the reaction time follows from
+//! `rig.toml` and holds for any delay or loss of one transaction; every second lot therefore runs with replies at the
+//! end of their timeout.
 
 mod reaction;
 mod sweep;
@@ -25,7 +26,7 @@ use std::path::Path;
 use sweep::Sweep;
 use tempfile::TempDir;
 
-/// Delay of the replies in every second lot, ms: 3 ms less than `rig.toml` allows.
+/// Delay of the replies in every second lot, ms: 3 ms less than the timeout in `rig.toml`.
 const LATE_MS: f64 = 25.0;
 /// Number of classes of instants; each is a bar of the chart.
 const CLASSES: usize = 20;
@@ -40,7 +41,7 @@ struct Stop {
     reaction_ms: Option<f64>,
 }
 
-/// Result of the lots of one sweep, with usual or with late replies.
+/// Stops of all lots of one sweep, with usual or with late replies.
 #[derive(Debug)]
 struct SweepResult {
     sweep: Sweep,
@@ -156,7 +157,7 @@ fn play_lot(
     Ok(())
 }
 
-/// Returns the bits of motion outputs by name of the module.
+/// Returns the bit mask of the motion outputs of each module, by the name of the module.
 fn moving(wiring: &Wiring) -> BTreeMap<String, u16> {
     let mut bits = BTreeMap::new();
     for point in DigitalOut::ALL.iter().filter(|point| point.moves()) {

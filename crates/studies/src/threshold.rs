@@ -1,9 +1,10 @@
-//! Study `threshold`: test time against error of the thresholds, for every strategy and baud rate, with the acts and
-//! transactions of the whole line.
+//! Study `threshold`: test time against error of the thresholds (operate and release voltage), for every strategy and
+//! baud rate, with all steps and bus transactions of the whole line.
 //!
-//! The world has no errors of instruments, certificates, temperature and operations, so that the error of the strategy
-//! remains. The time of the operate threshold includes 25 ms of settling at the pre-bias, because a recipe without coil
-//! resistance spends them there. The strategy `pulse` finds whether a limit is kept, and no value.
+//! The world has no errors of instruments, certificates, temperature and operations, so that only the error of the
+//! strategy remains. The time of the operate threshold includes 25 ms of settling at the pre-bias, because a recipe
+//! without coil resistance spends them there. The strategy `pulse` finds only whether the threshold keeps its limit,
+//! and no value.
 
 use super::figure::Bar;
 use super::method::{self, BAUDS, TimedParameter};
@@ -12,7 +13,8 @@ use super::output::Report;
 use super::variant::Variant;
 use machine::dut::em_relay::{Parameter, Strategy};
 
-/// Operate and release threshold. The operate threshold takes 0.025 s more: flux and armature settle at the pre-bias.
+/// Operate and release threshold. The operate threshold takes 0.025 s more, because flux and armature settle at the
+/// pre-bias.
 const THRESHOLDS: [TimedParameter; 2] = [
     TimedParameter {
         more_s: 0.025,
@@ -21,7 +23,7 @@ const THRESHOLDS: [TimedParameter; 2] = [
     TimedParameter::of(Parameter::ReleaseVoltage, &["release"]),
 ];
 
-/// Returns the bars of a strategy at 115200 baud: rms in millivolts, and seconds.
+/// Returns the bars of a strategy at 115200 baud: rms error in millivolts, and seconds of rig time.
 fn bars(parameter: Parameter, strategy: Strategy) -> Option<(f64, f64)> {
     match (parameter, strategy) {
         (Parameter::OperateVoltage, Strategy::CoarseFine) => Some((1.0, 0.20)),

@@ -1,11 +1,11 @@
-//! Error of times and bounces: how much smaller it is when a latch ends the count at the first make, and what reference
-//! clock, gate delay and bus add.
+//! Error of times and bounces: how much a counter latch that ends the count at the first make reduces it, and what
+//! reference clock, gate delay and bus add.
 //!
 //! Gate 0 is latched: its count ends at the first make. Gate 1 is raw: it counts while the contact is open, bounces
-//! included. Gate 1 alone would report the time plus the bounce, so the row "raw gate" adds both values of the same test. A
-//! count is the number of whole clock periods, whose phase is random: its error is 8.2 us rms at 50 kHz and any baud rate.
-//! A bounce is the difference of two counts. The truth holds the time of the last operation only, so the study measures
-//! one operation instead of the mean of several.
+//! included. Gate 1 alone would report the time plus the bounce, so the row "raw gate" adds both values of the same
+//! test. A count is the number of whole clock periods, whose phase is random: its error is 8.2 us rms at 50 kHz and any
+//! baud rate. A bounce is the difference of two counts. The truth holds the time of the last operation only, so the
+//! study measures a single operation instead of averaging several.
 
 use super::error::Pooled;
 use super::figure::{Bar, Figure};
@@ -64,14 +64,14 @@ fn rows(name: &str, lots: &[Lot]) -> Vec<Figure> {
     DIRECTIONS.iter().flat_map(of).collect()
 }
 
-/// Returns the error that counter gate 1 (not latched) alone would make, ms: measured time plus measured bounce, minus
-/// the true time.
+/// Returns the error that the raw counter gate 1 alone would make, ms: measured time plus measured bounce, minus the
+/// true time.
 fn raw(part: &Part, time: Parameter, bounce: Parameter) -> Option<f64> {
     let (time, bounce) = (part.reading(time)?, part.reading(bounce)?);
     Some(time.value + bounce.value - time.truth)
 }
 
-/// Measures in worlds with one error each, and in the world with all of them.
+/// Measures in worlds with one kind of error each, and in the world with all of them.
 fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let worlds: [(&str, Vec<Change>); 2] = [
         (

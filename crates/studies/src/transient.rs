@@ -19,9 +19,10 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// Default relative tolerance of a step; it gives an error of 1e-10 s on first events and 1e-8 s on last bounces.
+/// Default relative tolerance of an integration step; it gives errors of 1e-10 s on first events and 1e-8 s on last
+/// bounces.
 pub const USUAL_RTOL: f64 = 1e-8;
-/// Number of integrations of a case for its wall time.
+/// Number of integrations of each case; the median gives its wall time.
 const REPEATS: usize = 5;
 
 /// The answer to one case: its transient, and the wall time of the integration.
@@ -106,7 +107,7 @@ impl Answer {
     }
 }
 
-/// Returns the results under the keys of the cases file; null for an event that did not happen.
+/// Returns the results under the keys of the cases file; an event that did not happen is null.
 fn results(outcome: &Outcome) -> Map<String, Value> {
     let rows = [
         ("NC_first_open", json!(outcome.nc_first_open)),

@@ -1,8 +1,8 @@
-//! A variant of the configuration: a copy with other values of a recipe, another baud rate, or a world whose instruments
-//! have no errors.
+//! A variant of the configuration: a copy with other values in the recipe, another baud rate, or a world whose
+//! instruments have no errors.
 //!
 //! Controller and simulated rig both read the copy, so that line, modules and sequence are those of any lot; only the
-//! keys of the variant differ. The copy is deleted with [`ChangedConfig`].
+//! keys of the variant differ. Dropping the [`ChangedConfig`] deletes the copy.
 
 use super::order::Order;
 use anyhow::{Context, anyhow};
@@ -14,7 +14,7 @@ use toml::{Table, Value};
 /// A key by its dotted path, and its new value.
 pub type Change = (&'static str, Value);
 
-/// Keys of an exact world: no errors of instruments, temperature and operations, so that the error of the strategy
+/// Keys of an exact world: no errors of instruments, temperature and operations, so that only the error of the strategy
 /// remains. Noise and resolution of the converters stay; there are no defects.
 const EXACT: [(&str, f64); 13] = [
     ("devices.ai_gain_pct", 0.0),
@@ -31,10 +31,11 @@ const EXACT: [(&str, f64); 13] = [
     ("lot.thermal_emf_sd_uv", 0.0),
     ("defects.rate_pct", 0.0),
 ];
-/// Standard uncertainty of every certificate in a world without errors: the format demands one above zero.
+/// Standard uncertainty of every certificate in a world without errors, in the unit of the certificate; the file format
+/// requires a value above zero.
 const CERTIFIED_U: f64 = 1e-6;
-/// Baud rate below which the host watchdog gets a longer time-out: the requests to all modules at the start take longer
-/// there than the usual time-out.
+/// Baud rate below which the host watchdog gets a longer timeout: there the requests to all modules at the start take
+/// longer than the usual timeout.
 const SLOW_BAUD: u32 = 19_200;
 
 /// Differences of a variant from the configuration that it copies.
@@ -60,7 +61,7 @@ pub struct ChangedConfig {
 }
 
 impl Variant {
-    /// Creates a variant without errors of the instruments; `baud` is that of the measuring line, bits per second.
+    /// Creates a variant without errors of the instruments; `baud` applies to the measuring line, bits per second.
     pub fn exact(baud: u32, recipe: Vec<Change>) -> Self {
         Self {
             recipe,
@@ -79,7 +80,7 @@ impl Variant {
         }
     }
 
-    /// Returns the same variant with these keys of the world.
+    /// Returns the variant with these changed keys of the world.
     pub fn in_world(self, world: Vec<Change>) -> Self {
         Self { world, ..self }
     }

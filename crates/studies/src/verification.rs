@@ -1,11 +1,11 @@
-//! How often `calibrate --verify` fails a rig that has not changed.
+//! Study `verification`: how often `calibrate --verify` fails a rig that has not changed.
 //!
 //! The study calibrates every rig once and verifies it on other days: the errors of the rig stay, while noise,
 //! operations and temperatures of the reference parts change (fault `noise_seed`). A verification checks that every
-//! factor lies within [`K_JOINT`] standard uncertainties of both measurements together. With independent factors and
-//! exact uncertainties one of fifteen factors is outside in about one verification of 25. The bar is that rate plus
-//! three standard deviations of a count. Further rows show the scatter of each factor divided by its stated
-//! uncertainty: a ratio above 1 means that the stated uncertainty is too small.
+//! factor differs from its calibration by at most [`K_JOINT`] times the standard uncertainty of the difference. With
+//! independent factors and exact uncertainties, one of fifteen factors is outside in about one verification in 25. The
+//! bar is that rate plus three standard deviations of a count. Further rows show the scatter of each factor divided by
+//! its stated uncertainty: a ratio above 1 means that the stated uncertainty is too small.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure, rms};
@@ -20,10 +20,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Result of the verification on one day: the deviation of each factor, in standard uncertainties, by name.
+/// Result of the verification on one day: the deviation of each factor by its name, in standard uncertainties.
 type Day = BTreeMap<String, f64>;
 
-/// Calibrates one rig per lot of the order, verifies it once per part of a lot, and makes the report.
+/// Calibrates one rig per lot of the order, verifies it on as many days as a lot has parts, and makes the report.
 ///
 /// # Errors
 /// Fails when a process does not start, or when its answer does not parse.
@@ -64,8 +64,8 @@ fn read(rows: &str) -> anyhow::Result<Day> {
     Ok(day)
 }
 
-/// Returns the share of verifications that [`K_JOINT`] lets fail when the factors are normal, independent and as
-/// uncertain as stated.
+/// Returns the share of verifications that fail by chance with [`K_JOINT`], when the factors are normal, independent
+/// and as uncertain as stated.
 fn chosen_failure_rate(factors: usize) -> f64 {
     let inside = 2.0 * Normal::standard().cdf(K_JOINT) - 1.0;
     1.0 - inside.powi(factors as i32)

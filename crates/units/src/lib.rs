@@ -1,7 +1,7 @@
 //! Physical units as types, so that a voltage is never compared with a limit in ohms.
 //!
-//! Arithmetic stays within one unit; the only mixed operation is Ohm's law, [`Volt::over`]. Rig time is in whole
-//! microseconds: [`RigTime`] is an instant, [`Span`] a duration.
+//! Arithmetic stays within one unit; the only mixed operation is Ohm's law, [`Volt::over`]. Rig time, real or
+//! simulated, is in whole microseconds: [`RigTime`] is an instant, [`Span`] a duration.
 //!
 //! ```
 //! use units::{Ampere, Ohm, RigTime, Span, Volt};

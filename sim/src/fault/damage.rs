@@ -1,4 +1,4 @@
-//! Altered replies: disturbed bits, foreign bytes, the host's own echo, a second transmitter, a wrong baud rate.
+//! Altered replies: flipped bits, foreign bytes, the host's own echo, a second transmitter, a wrong baud rate.
 //!
 //! Second transmitters and wrong baud rates act on the bits of the wire ([`crate::uart`]), so that the host
 //! receives what a real receiver would: shifted characters and broken stop bits.
@@ -45,7 +45,7 @@ const LIST: [FaultEntry; 5] = [
     },
 ];
 
-/// Largest offset between the replies of two modules at one address, bits: two characters.
+/// Greatest offset between the simultaneous replies of two modules at one address, bits: two characters.
 const APART_BITS: i64 = 20;
 
 #[derive(Default)]
@@ -88,7 +88,7 @@ impl Family for Damage {
 }
 
 impl Damage {
-    /// When the fault strikes, superposes the reply of a second module at the address of `module`.
+    /// When the fault strikes, superposes on the reply of `module` that of a second module at the same address.
     pub(super) fn clash(
         &self,
         module: &str,

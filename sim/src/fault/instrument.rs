@@ -1,5 +1,5 @@
-//! Faults of instruments and their links; `value` describes the form of a value, with `INSTRUMENT:` before it where
-//! only one instrument or adapter has the fault.
+//! Faults of instruments and their links. `value.rs` describes the form of a value; a value may begin with
+//! `INSTRUMENT:` to limit the fault to one instrument or adapter.
 
 use rand_chacha::ChaCha8Rng;
 
@@ -89,7 +89,7 @@ struct Active {
     for_us: u64,
 }
 
-/// Active faults of instruments, with their random stream.
+/// Active faults of instruments, with the random stream of their draws.
 pub struct InstrumentFaults {
     rng: ChaCha8Rng,
     active: Vec<Active>,
@@ -141,7 +141,7 @@ impl InstrumentFaults {
         self.active.iter().filter_map(|it| it.target.as_deref())
     }
 
-    /// Draws whether a fault strikes now; returns its duration, microseconds.
+    /// Draws whether the fault strikes `name` now; returns its duration in microseconds when it strikes.
     pub fn strikes(&mut self, fault: InstrumentFault, name: &str, now_us: u64) -> Option<u64> {
         let rng = &mut self.rng;
         let mut mine = self.active.iter().filter(|it| {

@@ -1,4 +1,4 @@
-//! Faults of lines and modules: a layer that changes a module's reply before the host receives it.
+//! Faults of lines and modules: a layer between the modules and their host that loses, delays or alters replies.
 //!
 //! | file | family |
 //! |---|---|
@@ -8,12 +8,12 @@
 //! | `upset` | modules that restart, trip, or are replaced by another product |
 //! | `port` | dead lines, ports that vanish and come back |
 //!
-//! `instrument` has the faults of SCPI instruments, which `scpi/` applies; a new one is a variant there, with its
-//! line in that file's `LIST`.
+//! `instrument` has the faults of SCPI instruments, which `scpi/` applies. A new fault of instruments is a variant in
+//! that file, with its line in that file's `LIST`.
 //!
-//! Faults combine freely, and one name may appear more than once; `value.rs` reads what follows the name: probability, duration, window. All
-//! draws come from a random stream of their own, so that adding a fault changes no other draw of the rig.
-//! `sim.toml` lists the faults of the world (mechanism, board, part).
+//! Faults combine freely, and a name may appear more than once. `value.rs` parses the text after the name: probability,
+//! duration, window. The faults draw from their own random stream, so that adding a fault changes no other draw of the
+//! rig. `sim.toml` lists the faults of the world (mechanism, board, part).
 
 mod damage;
 pub mod instrument;
@@ -51,7 +51,7 @@ struct FaultEntry {
     what: &'static str,
 }
 
-/// A family of faults, with those that the command line or a script has requested.
+/// A family of faults, with those of its faults that the command line or a script has requested.
 trait Family {
     fn list(&self) -> &'static [FaultEntry];
 
@@ -77,7 +77,7 @@ pub fn list() -> Vec<FaultInfo> {
         .collect()
 }
 
-/// Active faults of lines and modules, with their random stream.
+/// Active faults of lines and modules, with the random stream of their draws.
 pub struct LineFaults {
     rng: ChaCha8Rng,
     loss: loss::Loss,
@@ -197,12 +197,12 @@ impl LineFaults {
         self.upset.due(now_us)
     }
 
-    /// When the fault strikes, superposes the reply of a second module at the address of `module`.
+    /// When the fault strikes, superposes on the reply of `module` that of a second module at the same address.
     pub fn clash(&mut self, module: &str, reply: &mut Vec<u8>, now_us: u64) {
         self.damage.clash(module, reply, &mut self.rng, now_us);
     }
 
-    /// Applies loss, damage and delay to a reply; returns the extra microseconds and the bytes, `None` when
+    /// Applies loss, damage and delay to a reply; returns the extra delay in microseconds and the bytes, or `None` when
     /// nothing arrives.
     pub fn apply(
         &mut self,

@@ -1,7 +1,7 @@
 //! Dead lines and lost ports.
 //!
-//! A cut line is silent and stays open. A lost port ends every open descriptor, as an unplugged converter does.
-//! Both recover after two seconds unless the value names another duration.
+//! A cut line stays open and carries nothing. A lost port ends every open descriptor, as an unplugged converter does.
+//! Both recover after two seconds unless the value states another duration.
 
 use rand_chacha::ChaCha8Rng;
 
@@ -37,7 +37,8 @@ const AWAY_US: u64 = 2_000_000;
 pub(super) struct Port {
     dead: Targets,
     lost: Targets,
-    /// Random losses: time without the port, microseconds, and the chance that one request causes the loss.
+    /// Random losses: time for which the port stays away, microseconds, and the chance that one request causes the
+    /// loss.
     losses: Vec<(u64, Chances)>,
 }
 
@@ -82,7 +83,7 @@ impl Port {
         self.dead.hold(line, now_us)
     }
 
-    /// Draws whether a request makes the port vanish.
+    /// Draws whether this request makes the port vanish.
     pub(super) fn may_lose(&mut self, line: &str, rng: &mut ChaCha8Rng, now_us: u64) {
         for (away_us, chances) in &self.losses {
             if chances.occurs(rng, now_us) {

@@ -1,7 +1,7 @@
 //! Modules that restart, trip, or are replaced by another product.
 //!
-//! A fault that names a module strikes it once, at its instant; a fault with a probability strikes just before a
-//! request.
+//! A fault with the name of a module strikes that module once, at its instant; a fault with a probability strikes just
+//! before a request.
 
 use rand_chacha::ChaCha8Rng;
 
@@ -95,7 +95,7 @@ impl Family for Upset {
 }
 
 impl Upset {
-    /// Draws an event that strikes a module just before it receives a request.
+    /// Draws an event that strikes a module just before it receives this request.
     pub(super) fn before_a_request(&self, rng: &mut ChaCha8Rng, now_us: u64) -> Option<Event> {
         if self.reset.occurs(rng, now_us) {
             return Some(Event::Reset);

@@ -7,7 +7,7 @@
 //! | ms | `delay=20` | duration, milliseconds |
 //! | MODULE or LINE | `reset=board_do@5` | key of a table in `rig.toml`; on a bench `module[N]` from 0, or `bench` |
 //!
-//! `@` introduces the second of rig time at which the fault begins, `..` the second at which it ends:
+//! After `@` stands the second of rig time at which the fault begins, after `..` the second at which it ends:
 //! `drop=0.5@10..12`. Without them the fault lasts from the start to the end of the run.
 
 use rand::RngExt;
@@ -38,9 +38,9 @@ pub(super) struct FaultRequest<'a> {
     pub(super) window: Window,
 }
 
-/// Trigger of a fault: chance, or the name of a module or line.
+/// Trigger of a fault: a probability, or the name of a module or line.
 pub(super) enum Trigger<'a> {
-    /// Probability, and the text after `/`.
+    /// Probability, and the text after `/` if there is one.
     Chance(f64, Option<&'a str>),
     Target(String),
 }
@@ -147,7 +147,7 @@ impl Targets {
         self.windows(name).any(|window| window.holds(now_us))
     }
 
-    /// Returns every window of one name.
+    /// Returns all windows of a name.
     pub(super) fn windows(&self, name: &str) -> impl Iterator<Item = Window> {
         let mine = self.0.iter().filter(move |(known, _)| known == name);
         mine.map(|(_, window)| *window)

@@ -1,15 +1,15 @@
-//! Alarms of the counter module; while they are on, they control its two outputs.
+//! Alarms of the counter module; an alarm that is on controls the digital outputs instead of the host.
 //!
 //! | request | mode 0: a limit per counter | mode 1: two limits on counter 0 |
 //! |---|---|---|
 //! | `~AAAS` | S = 0 | S = 1 (factory setting of the 7080D) |
-//! | `~AAA` | `!AA0` | `!AA1`; a vendor's library sends this request, no manual has it |
+//! | `~AAA` | `!AA0` | `!AA1`; the manuals lack this request, but a vendor's library sends it |
 //! | `@AADI` | `!AAS0D00`, S: bit n for the alarm of counter n | S: 0 off, 1 momentary, 2 latched |
 //! | `@AAPA(8 hex)`, `@AARP` | limit of counter 0 | high limit, output 0 |
 //! | `@AASA(8 hex)`, `@AARA` | limit of counter 1 | high-high limit, output 1 |
 //! | `@AAEAN`, `@AADAN` | alarm of counter N on, off | refused |
 //! | `@AAEAM`, `@AAEAL`, `@AADA` | refused | momentary, latched, off |
-//! | `@AACA` | refused | clears a latched alarm until its counter reaches the limit again |
+//! | `@AACA` | refused | clears a latched alarm; it returns when its counter reaches the limit again |
 //!
 //! An output is on while its counter is at its limit or above; a latched output stays on.
 
@@ -51,7 +51,7 @@ pub(super) struct Alarm {
 }
 
 impl Alarm {
-    /// Creates alarms that are off, in the factory mode of the model.
+    /// Creates alarms that are off; `two_limits` selects mode 1, the factory setting of some models.
     pub(super) fn new(two_limits: bool) -> Self {
         let mode = if two_limits {
             Mode::TwoLimits(Kind::Off)
@@ -91,7 +91,7 @@ impl Alarm {
         self.state() != 0
     }
 
-    /// Returns the outputs for the host's word and the present counts; updates the latches.
+    /// Returns the outputs from the word of the host and the present counts; updates the latches.
     pub(super) fn outputs(&mut self, host: u8, values: [u64; 2]) -> u8 {
         let reached = |value: u64, limit: usize| value >= u64::from(self.limits[limit]);
         match self.mode {

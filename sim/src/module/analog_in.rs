@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `#AA` | `>` and a field per channel; a disabled channel is blank |
 //! | `#AAN` | `>` and one field; `?AA` when channel N does not exist |
-//! | `$AAA` | `>` and 4 hexadecimal digits per channel, whatever the format |
+//! | `$AAA` | `>` and 4 hexadecimal digits per channel, whatever the data format |
 //! | `$AA5VV`, `$AA6` | write the enable mask to the EEPROM; read it |
 //! | `$AA3` | `>` and the temperature of the cold junction (7018), always room temperature |
 //! | `$AA7CiRrr`, `$AA8Ci` | newer modules: write the range of one channel to the EEPROM; read it as `CiRrr` |
@@ -12,8 +12,8 @@
 //!
 //! A new type code in the configuration word applies to every channel.
 //!
-//! A reading is the last finished conversion of its channel (see [`super::converter`]) with the module's own
-//! gain, offset and noise, quantised to 16 bit, to 12 bit in fast mode, to 24 bit for RTD. Factory calibration
+//! A reading is the last finished conversion of its channel (see [`super::converter`]) with the module's own gain
+//! error, offset and noise, quantised to 16 bits, to 12 bits in fast mode, to 24 bits for RTD. Factory calibration
 //! (`$AA0`, `$AA1`, `~AAEV`) is not simulated, since a rig never sends it.
 
 use rand::RngExt;
@@ -47,7 +47,7 @@ struct AnalogIn {
     converter: Converter,
     /// Last reading of each channel, fraction of full scale.
     readings: [f64; 8],
-    /// Type code that the configuration word had last; a change applies to every channel.
+    /// Type code of the last configuration word; a change of it applies to every channel.
     type_code: u8,
     /// Present type code of each channel.
     ranges: [u8; 8],
@@ -60,7 +60,7 @@ enum Kind {
     Voltage {
         may_be_fast: bool,
     },
-    /// 7018: reads thermocouples too, has no fast mode.
+    /// 7018: also reads thermocouples, has no fast mode.
     Thermocouple,
     Rtd,
 }
@@ -173,7 +173,7 @@ impl AnalogIn {
         self.kind.range(self.ranges[usize::from(channel)])
     }
 
-    /// Returns the reading without a connection: over range at a sensor input, zero at a voltage input.
+    /// Returns the reading of an open input: over range at a sensor input, zero at a voltage input.
     fn open_input(&self) -> f64 {
         match self.kind {
             Kind::Rtd => f64::INFINITY,
@@ -332,7 +332,7 @@ impl Family for AnalogIn {
 
     fn restart(&mut self, _plate: &ModuleBase) {}
 
-    /// Fills every channel with a reading, since the module has been powered for long.
+    /// Fills every channel with a reading, as in a module that has long been powered.
     fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         for channel in 0..self.kind.channels() {
             let terminal = at.plant.analog_in(at.module, channel);

@@ -2,7 +2,7 @@
 //!
 //! | request | reply |
 //! |---|---|
-//! | `#AA(data)`, `#AAN(data)` | `>`; out of range `?AA` and the nearest limit; with a tripped watchdog `!` |
+//! | `#AA(data)`, `#AAN(data)` | `>`; out of range: `?AA`, and the nearest limit as value; after a watchdog trip `!` |
 //! | `$AA6[N]` | last commanded value |
 //! | `$AA8[N]` | present value: measured at the terminals (7021), computed from the ramp (others) |
 //! | `$AA4[N]`, `$AA7[N]` | store the commanded value as power-on value; read that value |
@@ -57,7 +57,7 @@ pub(super) fn build(
     let key = setting::either(keys, "type", "range")?;
     let type_code = setting::code(keys, key, 0xFF)?.unwrap_or(0x32);
     let span = match (model.own_slew, type_code) {
-        // Type code 3F in the configuration word: each channel has a type of its own, 32 at first.
+        // Type code 3F in the configuration word: each channel has its own type, initially 32.
         (true, 0x3F) => span(model, 0x32),
         (_, code) => span(model, code),
     };
@@ -145,7 +145,7 @@ impl AnalogOut {
         value * (1.0 + self.tolerances.ao_gain) + self.tolerances.ao_offset_v
     }
 
-    /// Drives the terminals; the plant has one analog output per module, channel 0.
+    /// Drives the terminals; only channel 0 has a wire to the plant.
     fn drive(&self, base: &ModuleBase, channel: usize, at: &mut Terminals<'_>) {
         if channel == 0 {
             let value = self.carried(self.span(base, 0), self.channels[0].ramp.present());

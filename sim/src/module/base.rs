@@ -4,9 +4,9 @@
 //! | request | reply |
 //! |---|---|
 //! | `$AA2` | `!AATTCCFF` as stored |
-//! | `$AA5` | `!AAS`, S = 1 on the first read after a reset; in the I-7080 `$AA5N` is about counter N |
+//! | `$AA5` | `!AAS`, S = 1 on the first read after a reset; on the I-7080, `$AA5N` reads the state of counter N |
 //! | `$AAF`, `$AAM`, `~AAO(name)` | read firmware, read name, write name of up to 6 characters |
-//! | `$AAI` | `!AA0` when INIT* is grounded, else `!AA1` |
+//! | `$AAI` | `!AA0` with INIT* grounded, else `!AA1` |
 //! | `%AANNTTCCFF` | `!NN`; baud and checksum bit need INIT* and take effect at the next power-on |
 //! | `~AA0`..`~AA3` | host watchdog |
 //! | `~AARD`, `~AARDVV` | read, write response delay; newer modules only |
@@ -35,7 +35,7 @@ pub(super) const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600,
 /// Baud rate of a module with INIT* grounded, bits per second, whatever rate it stores.
 const INIT_BAUD: u32 = 9_600;
 
-/// Settings of a line with which its modules are configured.
+/// Settings of a line that its modules take over at commissioning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commissioning {
     /// Baud rate of the line.
@@ -139,7 +139,7 @@ impl ModuleBase {
         u64::from(self.response_delay_ms) * 1_000
     }
 
-    /// Notes a restart: `$AA5` reports it, and settings that need a power cycle take effect.
+    /// Records a restart: `$AA5` reports it, and settings that need a power cycle take effect.
     pub fn power_cycled(&mut self) {
         self.reset_unread = true;
         self.soft_init_s = 0;
@@ -154,7 +154,8 @@ impl ModuleBase {
         self.type_code = 0;
     }
 
-    /// Carries out commands that every module knows; `fits` checks a type and format for the family.
+    /// Carries out the commands that every module knows; `fits` checks whether the family accepts a type code and a
+    /// format.
     pub fn answer(
         &mut self,
         request: &Request<'_>,
@@ -288,7 +289,7 @@ fn name(spec: &ModuleSpec) -> Result<String, ConfigError> {
     Ok(name.unwrap_or(printed).into())
 }
 
-/// Reads `watchdog`: `true` uses the time-out of the plant, a table brings its own.
+/// Reads the key `watchdog`: `true` takes the time-out of the plant, a table states its own.
 fn watchdog(keys: &Table, plant_ms: f64) -> Result<Watchdog, ConfigError> {
     let tenths_of = |seconds: f64| (seconds * 10.0).round().clamp(1.0, 255.0) as u8;
     let plant_s = plant_ms / 1e3;

@@ -1,9 +1,9 @@
-//! One free-running converter that scans several inputs.
+//! One free-running converter that several inputs share.
 //!
-//! The enabled channels take turns in channel order. Each conversion integrates its own window of `1/rate`, and
-//! its result appears at the end of the window. No request speeds up the scan: a faster line only reads the same
-//! result again, and after a change of the world a reading is valid only when its window began after the change.
-//! Simpson's rule over start, middle and end integrates the window. A change of the mask lets the running window
+//! The enabled channels take turns in channel order. Each conversion integrates the input over its own window of
+//! `1/rate`, and its result appears at the end of the window. No request speeds up the scan: a faster line only reads
+//! the same result again, and after a change of the world only a reading whose window began after the change is valid.
+//! Simpson's rule over start, middle and end computes the integral. A change of the mask lets the running window
 //! finish.
 
 use super::Terminals;
@@ -15,8 +15,8 @@ pub struct Converter {
     mask: u8,
     period_us: f64,
     window: Option<Window>,
-    /// Start of the present scan rate, and the number of windows since then: window ends stay exact although a
-    /// period is no whole number of microseconds.
+    /// Start of the present scan rate; the next field counts the windows since then. Window ends stay exact although a
+    /// period is not a whole number of microseconds.
     origin_us: u64,
     windows: u64,
 }
@@ -81,7 +81,7 @@ impl Converter {
         }
     }
 
-    /// Takes the sample that is due; returns channel and mean at the end of a window.
+    /// Takes the sample that is due; at the end of a window returns the channel and the mean of its window.
     pub fn run(&mut self, at: &mut Terminals<'_>) -> Option<(u8, f64)> {
         let window = self.window.as_mut()?;
         let sample = at.plant.analog_in(at.module, window.channel);

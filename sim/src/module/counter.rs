@@ -1,8 +1,8 @@
 //! The counter and frequency module 7080 (7080B, 7080D): two gated 32-bit counters.
 //!
 //! Each counter runs from its preset to its maximum, then wraps to the preset and sets its overflow flag. Gating is
-//! exact as in hardware: a counter holds the pulses of its input during the whole open time of its gate, at whatever
-//! instant the host reads it. Gate mode 0 counts while the gate is shut (low), 1 while it is open (high), 2 always. In
+//! exact as in hardware: a counter holds the pulses of its input over the whole open time of its gate, at whatever
+//! instant the host reads it. Gate mode 0 counts while the gate input is low, 1 while it is high, 2 always. In
 //! frequency mode (type 51) a reading is the frequency in hertz with the resolution of the gate time: 10 Hz (0.1 s) or
 //! 1 Hz (1.0 s, FF bit 2).
 //!
@@ -95,8 +95,8 @@ fn gate_mode(keys: &Table) -> Result<u8, ConfigError> {
     Ok(mode.unwrap_or(1) as u8)
 }
 
-/// Answers `$AA9(data)`: accepts five digits with a point after one of them, refuses them in other numbers or places;
-/// other characters are no command.
+/// Answers `$AA9(data)`, five digits with a decimal point after one of them: refuses any other number of digits or
+/// place of the point; data with other characters is an unknown command.
 fn show(base: &ModuleBase, data: &[u8]) -> Answer {
     let digits = data.iter().filter(|byte| byte.is_ascii_digit()).count();
     let points = data.iter().filter(|byte| **byte == b'.').count();
@@ -120,7 +120,7 @@ impl Counter {
         }
     }
 
-    /// Brings both counters up to now; returns the clock frequency of each, hertz.
+    /// Brings both counters up to the present instant; returns the clock frequency of each, hertz.
     fn update(&mut self, at: &mut Terminals<'_>) -> [f64; 2] {
         [0, 1].map(|n| {
             let gate_us = self.gate_us(n, at);
@@ -293,7 +293,7 @@ impl Counter {
         }
     }
 
-    /// Returns the outputs: the alarms' word where they control, else the host's word.
+    /// Returns the outputs: the word of the alarms where they control, otherwise the word of the host.
     fn carried(&mut self, at: &mut Terminals<'_>) -> u8 {
         let hz = self.update(at);
         let values = [0, 1].map(|n| self.channels[n].value(hz[n]));

@@ -10,10 +10,10 @@
 //! | `$AA4` | inputs at the last `#**`; `?AA` when there was none |
 //! | `~AA5P`, `~AA5S`, `~AA4P`, `~AA4S` | store and read power-on and safe outputs |
 //!
-//! The first byte holds the outputs and the second the inputs; on modules with more than eight inputs or outputs, they
-//! are the high byte and the low byte. The 7052 has only eight inputs: they are its first byte, and the second is 00.
-//! Latches record every change between two requests and every counted pulse; an input that has not changed since the
-//! last `$AAC` sets none.
+//! The first byte holds the outputs and the second the inputs; on modules with more than eight inputs or outputs, the
+//! first is the high byte and the second the low byte. The 7052 has only eight inputs: they are its first byte, and the
+//! second is 00. Latches record every change that a request finds and every counted pulse; an input that has not
+//! changed since the last `$AAC` sets no latch.
 
 use super::base::{Commissioning, ModuleBase};
 use super::shape::{Shape, ones};
@@ -40,10 +40,10 @@ struct Digital {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct EventCounter {
-    /// Count of the counter when the terminal had seen `from_edges` edges.
+    /// Count at the instant when the terminal had seen `from_edges` edges.
     start: u64,
     from_edges: u64,
-    /// Number of edges at the last update, by which the latches notice further ones.
+    /// Number of edges at the last update; a difference sets the latches.
     seen_edges: u64,
 }
 
@@ -102,8 +102,8 @@ fn output_words(keys: &Table, shape: Shape) -> Result<[Option<u16>; 3], ConfigEr
 }
 
 impl Digital {
-    /// Reads counters and latches of the inputs, and returns the signals at the inputs: `latches = MASK` (latched high),
-    /// or a table with `high` and `low`.
+    /// Reads the keys of counters and latches, and returns the signals at the inputs. `latches` is a mask (latched
+    /// high), or a table with `high` and `low`.
     fn read_inputs(&mut self, keys: &Table) -> Result<Vec<f64>, ConfigError> {
         let inputs = self.shape.inputs;
         let is_level = |level: f64| level == 0.0 || level == 1.0 || level.is_nan();
@@ -140,7 +140,7 @@ impl Digital {
         levels
     }
 
-    /// Latches pulses that began and ended between two requests.
+    /// Sets the latches for pulses that began and ended between two requests.
     fn latch_edges(&mut self, at: &mut Terminals<'_>) {
         for (channel, counter) in self.counters.iter_mut().enumerate() {
             let edges = at.plant.edges(at.module, channel as u8);
@@ -164,7 +164,7 @@ impl Digital {
         }
     }
 
-    /// Refuses an output command: the digital manuals omit the address, the others include it.
+    /// Refuses an output command; by the manuals, digital modules answer without the address, the others with it.
     fn refused_output(&self, base: &ModuleBase) -> Answer {
         if self.names_refusals {
             dcon::refused(base.address)
@@ -204,7 +204,7 @@ impl Digital {
         dcon::accepted()
     }
 
-    /// Returns the outputs after a group or single-channel command; `None` when the channel does not exist.
+    /// Returns the outputs after a group or single-channel command; `None` when the group or channel does not exist.
     fn grouped(&self, group: u8, channel: u8, data: u8) -> Option<u16> {
         let all = self.shape.all_outputs();
         let (mask, bits): (u16, u16) = match (group, channel) {
@@ -303,7 +303,7 @@ impl Digital {
     }
 }
 
-/// Builds `!(first)(second)00`: data without address.
+/// Builds `!(first)(second)00`, a data reply without address.
 fn data_reply(words: u16) -> Answer {
     let mut text = String::from("!");
     dcon::push_hex(&mut text, u64::from(words) << 8, 6);

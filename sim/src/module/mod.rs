@@ -39,13 +39,13 @@ use tolerances::Tolerances;
 pub struct Terminals<'a> {
     /// The world, already advanced to `now_us`.
     pub plant: &'a mut dyn Plant,
-    /// Identifier of the module.
+    /// Identifier of the module in the configuration.
     pub module: &'a str,
     /// Rig time, microseconds.
     pub now_us: u64,
 }
 
-/// Behaviour that differs between product families.
+/// Behaviour in which product families differ.
 pub trait Family: Send {
     /// Checks whether the family accepts a type code and a format word.
     fn fits(&self, type_code: u8, format: u8) -> bool;
@@ -188,7 +188,7 @@ impl Module {
         }
     }
 
-    /// Starts the module in the state of its table, as if it had been powered for long.
+    /// Starts the module in the state that its table describes, as if it had long been powered.
     pub fn energise(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,
@@ -279,7 +279,7 @@ fn broadcast(
     }
 }
 
-/// Returns the model number: `7017F` for `I-7017F`; LED variants of other families map to the plain ones.
+/// Returns the model number: `7017F` for `I-7017F`, and, except for the 7080D, without the `D` of a model with LEDs.
 fn model_number(model: &str) -> &str {
     let number = model.trim_start_matches("I-").trim_start_matches("M-");
     match number {

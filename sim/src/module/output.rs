@@ -1,4 +1,4 @@
-//! Models and ranges of analog outputs, and the text format of their values.
+//! Models and ranges of analog outputs, and the text format of output values.
 
 use super::range::Format;
 use crate::dcon;
@@ -16,7 +16,7 @@ pub(super) struct Model {
     pub(super) numbered: bool,
     /// True when each channel has a type and a slew rate of its own (7022).
     pub(super) own_slew: bool,
-    /// True when `$AA8` measures at the terminals.
+    /// True when `$AA8` returns a measurement at the terminals.
     pub(super) true_readback: bool,
 }
 

@@ -15,10 +15,10 @@ pub(super) struct Channel {
     pub(super) counted_us: f64,
     /// Open time of the gate at the last update, microseconds.
     pub(super) seen_us: f64,
-    /// Number of pulses that had passed the gate when the counter stood at its preset plus `start`.
+    /// Number of pulses that had passed the gate when the count was the preset plus `start`.
     zero_pulses: u64,
     start: u64,
-    /// Frequency at a bench input, hertz; `None` on a rig, where the plant's reference clock applies.
+    /// Frequency at a bench input, hertz; `None` on a rig, where the reference clock of the plant applies.
     bench_hz: Option<f64>,
 }
 

@@ -42,7 +42,7 @@ impl Ramp {
         *self = Self::at(value);
     }
 
-    /// Moves to `value` in steps; the first step follows one refresh from now unless steps are running.
+    /// Moves to `value` in steps; unless steps are already running, the first one follows after one refresh.
     pub fn go(&mut self, value: f64, now_us: u64, refresh_us: u64) {
         self.target = value;
         if self.next_us.is_none() && self.present != value {
@@ -55,7 +55,7 @@ impl Ramp {
         self.next_us.unwrap_or(u64::MAX)
     }
 
-    /// Moves by at most `step` units.
+    /// Moves by one step of at most `step` units; `refresh_us` is the time to the next step.
     pub fn step(&mut self, step: f64, refresh_us: u64) {
         let left = self.target - self.present;
         if left.abs() <= step {

@@ -1,8 +1,8 @@
 //! Ranges of analog inputs, and the text of a reading in the three data formats.
 //!
 //! A reading is a fraction of full scale after quantising: -1 to 1 (0 to 1 for a range without a negative side),
-//! infinite outside the range. Plain voltage ranges saturate; current, thermocouple and RTD ranges show `+9999.9`
-//! instead.
+//! infinite outside the range. Plain voltage ranges saturate at their ends; current, thermocouple and RTD ranges show
+//! `+9999.9` instead.
 
 use crate::dcon;
 

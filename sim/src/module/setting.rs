@@ -1,4 +1,4 @@
-//! Reads keys of a module whose values need more than a type: values per channel, bit masks, codes.
+//! Reads the keys of a module whose values are more than one plain number: values per channel, bit masks, codes.
 
 use std::ops::RangeInclusive;
 
@@ -28,7 +28,7 @@ pub fn baud(keys: &Table) -> Result<Option<u32>, ConfigError> {
 }
 
 /// Reads a list of at most `most` values, one per channel; a single value applies to channel 0, true and false count as
-/// 1 and 0. `form` describes the values that fit.
+/// 1 and 0. `form` describes the permitted values in messages.
 pub fn values(
     keys: &Table,
     key: &'static str,
@@ -89,7 +89,7 @@ pub fn word(keys: &Table, key: &'static str, words: &[&str]) -> Result<Option<u8
     })
 }
 
-/// Returns which of two keys with the same meaning the file has, `one` without either; fails when it has both.
+/// Returns the one of two synonymous keys that the file has, `one` when it has neither; fails when it has both.
 pub fn either(
     keys: &Table,
     one: &'static str,

@@ -1,7 +1,7 @@
-//! Individual errors, conversion rates and latency of one module, which its data sheet only bounds.
+//! Individual errors, conversion rates and latency of one module; its data sheet states only their limits.
 //!
-//! The seed draws the errors once per module, uniformly within the maker's limits. Each module has a random stream of
-//! its own, chosen by its name, so that adding or removing a module changes nothing for the others.
+//! The seed draws the errors once per module, uniformly within the maker's limits. Each module has its own random
+//! stream, chosen by its name, so that adding or removing a module changes nothing for the others.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,13 +9,13 @@ use rand_distr::StandardNormal;
 
 use crate::config::DeviceWorld;
 
-/// Shortest latency of a module, microseconds, whatever the draw.
+/// Shortest latency of a module, microseconds; a shorter draw counts as this.
 const QUICKEST_US: f64 = 100.0;
 
 /// Individual errors, conversion rates and latency of one module.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tolerances {
-    /// Mean time from the request's CR to the reply's first character, microseconds.
+    /// Mean time from the CR of the request to the first character of the reply, microseconds.
     pub latency_us: f64,
     /// Standard deviation of the latency between transactions, microseconds.
     pub latency_sd_us: f64,

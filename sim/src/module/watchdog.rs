@@ -43,7 +43,7 @@ impl Watchdog {
         }
     }
 
-    /// Returns the instant of expiry if no host feeds it; `None` while it does not run.
+    /// Returns the instant at which the watchdog expires unless the host feeds it; `None` while it does not run.
     pub fn expires_us(&self) -> Option<u64> {
         self.expires_us
     }

@@ -22,14 +22,14 @@ use crate::rig::Reply;
 /// Longest sleep of a line's thread.
 const IDLE: Duration = Duration::from_millis(50);
 
-/// How long before a deadline the thread wakes: a sleep ends some 60 us late, so the thread yields for the remaining
-/// time.
+/// Time before a deadline at which the thread wakes: a sleep ends about 60 us late, so the thread sleeps short and
+/// yields for the remaining time.
 const EARLY: Duration = Duration::from_micros(120);
 
-/// Least lateness of a reply that the journal records, microseconds: two characters at 19,200 baud.
+/// Lateness from which the journal records a reply, microseconds: two characters at 19,200 baud.
 const LATE_US: u64 = 1_000;
 
-/// Priority of the threads under SCHED_FIFO: below a controller on the same computer, above every usual process.
+/// Priority of the threads under SCHED_FIFO: below a controller on the same computer, above every ordinary process.
 const PRIORITY: i32 = 40;
 
 /// Bytes of one read, with the instant of the read.
@@ -78,7 +78,7 @@ impl Reader {
     fn finish(self, socket: &Socket) {
         self.end.store(true, Ordering::Release);
         socket.wake_reader();
-        // The panic message of the thread is already on stderr.
+        // A thread that panicked has already written its message to stderr.
         let _ = self.thread.join();
     }
 }
@@ -96,8 +96,8 @@ fn read(mut master: File, pieces: &Sender<Piece>, end: &AtomicBool) {
     }
 }
 
-/// Raises this thread to SCHED_FIFO where the system grants it. Where it does not, a busy computer may make replies
-/// late, and the journal records them.
+/// Raises this thread to SCHED_FIFO where the system permits it. Elsewhere a busy computer may make replies late, and
+/// the journal records them.
 fn raise() {
     let priority = ThreadPriority::from_posix(ScheduleParams {
         sched_priority: PRIORITY,
@@ -202,7 +202,7 @@ impl Server {
         }
     }
 
-    /// Returns rig time; when a deadline is at most [`EARLY`] away, waits until then first.
+    /// Returns the rig time; when the next deadline is at most [`EARLY`] away, first waits until that deadline.
     fn close_to_deadline(&self) -> u64 {
         let next_us = self.next_us();
         loop {

@@ -1,4 +1,4 @@
-//! Path and links of a line's port; they outlive the terminal, which changes when the port is lost.
+//! Path and links of a line's port; they outlast the terminal, which is a new one after each loss of the port.
 
 use std::io;
 use std::os::fd::OwnedFd;
@@ -55,8 +55,8 @@ impl Socket {
         self.state().links.drain(..).for_each(|link| remove(&link));
     }
 
-    /// Ends exclusive mode. A killed client leaves the terminal exclusive, and the open slave keeps that mode
-    /// alive.
+    /// Ends exclusive mode: a killed client leaves the terminal in that mode, and the open slave descriptor preserves
+    /// it.
     pub(super) fn share(&self) {
         if let Some(slave) = &self.state().slave {
             let _ = ioctl_tiocnxcl(slave);
@@ -70,14 +70,14 @@ impl Socket {
         Some(mode.output_speed())
     }
 
-    /// Wakes the reader with one character, which forms no request.
+    /// Wakes the reader with one character; it forms no request.
     pub(super) fn wake_reader(&self) {
         if let Some(slave) = &self.state().slave {
             let _ = rustix::io::write(slave, b"\r");
         }
     }
 
-    /// Unblocks a writer whose host does not read.
+    /// Unblocks a write that waits because the host does not read.
     pub(super) fn unblock_writer(&self) {
         if let Some(slave) = &self.state().slave {
             let _ = tcflush(slave, QueueSelector::IFlush);

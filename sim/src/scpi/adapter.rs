@@ -1,8 +1,8 @@
-//! Adapter of the Prologix kind between a byte stream and instruments on a GPIB.
+//! GPIB adapter of the Prologix kind, between a byte stream and the instruments on the bus.
 //!
 //! `++` begins a command of the adapter; every other line goes to the instrument at the present address. An ESC makes
 //! the next byte (CR, LF, ESC or `+`) data. The adapter works line by line: a line that follows `++read` waits until
-//! the reply has arrived or its time is over.
+//! the reply has arrived or the time limit of the read is over.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -12,7 +12,7 @@ use crate::fault::instrument::{InstrumentFault as Fault, InstrumentFaults};
 
 const ESCAPE: u8 = 0x1b;
 
-/// Settings: name of the command, least, most and first value.
+/// Settings: name of the command; minimum, maximum and initial value.
 const SETTINGS: [(&str, u32, u32, u32); 9] = [
     ("addr", 0, 30, 0),
     ("auto", 0, 1, 0),
@@ -33,36 +33,36 @@ pub struct Adapter {
     name: String,
     /// Value of each of [`SETTINGS`].
     settings: [u32; SETTINGS.len()],
-    /// Bytes of the host with the instants at which they are complete.
+    /// Bytes from the host, each with the instant at which it is complete.
     input: VecDeque<(u64, u8)>,
     line: Vec<u8>,
     escaped: bool,
-    /// True when the first byte of the line was escaped, so that the line is data.
+    /// True when the first byte of the line was escaped: the line is data even if it begins with `++`.
     literal: bool,
     reading: Option<Read>,
-    /// Instant at which the last read ended, before which no further line runs.
+    /// Instant at which the last read ended; the next line runs no earlier.
     free_us: u64,
 }
 
-/// A read in work: the instrument, none at an empty address, and the deadline.
+/// A read in progress: the instrument (`None` at an empty address), and the deadline.
 #[derive(Clone, Copy)]
 struct Read {
     device: Option<usize>,
     until_us: u64,
 }
 
-/// What an adapter sends to the host.
+/// Bytes that an adapter sends to the host.
 pub struct Sent {
-    /// Instant at which it leaves the adapter.
+    /// Instant at which they leave the adapter, microseconds.
     pub at_us: u64,
-    /// Bytes with their end.
+    /// Bytes, terminator included.
     pub bytes: Vec<u8>,
-    /// Instrument whose reply this is; `None` for a line of the adapter itself.
+    /// Instrument that sent the reply; `None` for an answer of the adapter itself.
     pub device: Option<usize>,
 }
 
 impl Adapter {
-    /// Switches an adapter on.
+    /// Creates an adapter in its state at power-on.
     pub fn new(name: &str) -> Self {
         Self {
             instruments: BTreeMap::new(),
@@ -90,7 +90,7 @@ impl Adapter {
         self.input.push_back((at_us, byte));
     }
 
-    /// Works until `now_us`; returns the next reply on the way.
+    /// Works on the input until `now_us`; returns the next bytes to send.
     pub fn work(
         &mut self,
         now_us: u64,
@@ -143,7 +143,7 @@ impl Adapter {
         })
     }
 
-    /// Returns the next instant at which a line may run or the present read may end.
+    /// Returns the next instant at which a line may run or the present read may end; `None` without input.
     pub fn next_us(&self, devices: &[Device]) -> Option<u64> {
         let Some(read) = &self.reading else {
             return Some(self.free_us.max(self.input.front()?.0));
@@ -168,7 +168,7 @@ impl Adapter {
         self.instruments.get(&address).copied()
     }
 
-    /// Interprets one byte; returns what the adapter itself answers.
+    /// Interprets one byte; returns the adapter's own answer, if any.
     fn byte(
         &mut self,
         byte: u8,
@@ -215,7 +215,7 @@ impl Adapter {
             return;
         };
         let device = &mut devices[number];
-        // Without END or line feed the instrument keeps waiting for the rest.
+        // Without END or a line feed the instrument waits for the rest of the message.
         let line_feed = matches!(self.of("eos"), 0 | 2) || line.ends_with(b"\n");
         if self.of("eoi") == 0 && !line_feed {
             return;
@@ -267,7 +267,8 @@ impl Adapter {
         None
     }
 
-    /// Sets a setting to a value in its range and ignores any other; without a value, returns the present one.
+    /// Sets a setting to a value within its range and ignores a value outside; without a value, returns the present
+    /// one.
     fn setting(&mut self, name: &str, value: Option<&str>) -> Option<String> {
         let Some(index) = SETTINGS.iter().position(|it| it.0 == name) else {
             return Some("Unrecognized command".into());

@@ -1,4 +1,4 @@
-//! Instruments around one circuit, from event to event.
+//! Instruments around one circuit, stepped from event to event.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -36,7 +36,7 @@ impl Bench {
     }
 }
 
-/// A bench that all its links use; clones share it.
+/// A bench that its links share; a clone refers to the same bench.
 #[derive(Clone)]
 pub struct SharedBench(Arc<Mutex<Bench>>);
 
@@ -60,13 +60,14 @@ impl SharedBench {
             .collect()
     }
 
-    /// Returns the name of each instrument behind a port at `place` (`tcp:HOST:PORT`, `serial:PATH:BAUD`) with its link.
+    /// Returns each instrument behind a port: its name, and its link with the port at `place` (`tcp:HOST:PORT`,
+    /// `serial:PATH:BAUD`).
     pub(super) fn links(&self, port: usize, place: &str) -> Vec<(String, String)> {
         let bench = self.lock();
         bench.ports[port].links(place, &bench.devices)
     }
 
-    /// Accepts a host; `false` when a fault keeps the port busy.
+    /// Accepts a host on a port; returns `false` when a fault keeps the port busy.
     pub fn open(&self, port: usize, now_us: u64) -> bool {
         let bench = &mut *self.lock();
         bench.advance(now_us);
@@ -87,7 +88,7 @@ impl SharedBench {
         bench.ports[port].receive(bytes, now_us, &mut bench.devices, &mut bench.faults);
     }
 
-    /// Returns what leaves the port by now.
+    /// Returns everything that has left the port up to `now_us`.
     pub fn due(&self, port: usize, now_us: u64) -> Vec<Out> {
         let bench = &mut *self.lock();
         bench.advance(now_us);

@@ -1,4 +1,4 @@
-//! Electrical boundary between instruments and what they connect to.
+//! Electrical boundary between the instruments and the circuit that they connect to.
 
 use crate::table::read_words;
 
@@ -13,9 +13,9 @@ pub enum Terminal {
     Output,
     /// Line side of the load circuit, from an AC source.
     Line,
-    /// Load current, as the voltage over the shunt divided by its resistance.
+    /// Load current; a digitizer sees it as a voltage over a shunt.
     Load,
-    /// Voltage over the output behind the clamp of +-10 V.
+    /// Voltage over the output, clamped to +-10 V.
     Clamped,
 }
 
@@ -28,7 +28,7 @@ read_words!(Terminal {
     "clamped" => Self::Clamped,
 });
 
-/// Source behind a pair of terminals.
+/// Source that an instrument connects to a pair of terminals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Drive {
     /// No connection.
@@ -49,16 +49,16 @@ pub enum Drive {
         /// Limit of the voltage, volts.
         limit_v: f64,
     },
-    /// Sine of a line.
+    /// Sine of an AC source.
     Sine {
         /// Volts rms.
         rms_v: f64,
         /// Hertz.
         hz: f64,
-        /// Phase at the instant of this drive, degrees; `None` continues the present phase.
+        /// Phase at the instant when this drive begins, degrees; `None` continues the present phase.
         phase_deg: Option<f64>,
     },
-    /// Rectangular pulses from the instant of this drive on.
+    /// Rectangular pulses, which begin at the instant of this drive.
     Pulses(Pulses),
 }
 
@@ -73,7 +73,7 @@ pub struct Pulses {
     pub period_us: f64,
     /// Time at the high level, microseconds.
     pub width_us: f64,
-    /// Number of pulses; `None` never ends.
+    /// Number of pulses; `None` for an endless train.
     pub count: Option<u64>,
     /// Resistance in series with the source, ohms.
     pub source_ohm: f64,
@@ -88,8 +88,8 @@ impl Pulses {
         }
     }
 
-    /// Returns the time from `since_us` to the next edge, microseconds, and whether the level is high now; `None` after
-    /// the last pulse.
+    /// Returns the time from `since_us` to the next edge, microseconds, and whether the level is high until then;
+    /// `None` after the last pulse.
     pub fn edge_us(&self, since_us: f64) -> Option<(f64, bool)> {
         let number = (since_us / self.period_us).floor();
         if self.count.is_some_and(|count| number >= count as f64) {
@@ -112,7 +112,7 @@ pub struct Reading {
     pub amps: f64,
 }
 
-/// What the instruments connect to.
+/// Circuit that the instruments drive and measure.
 pub trait Circuit: Send {
     /// Advances to `t_us`, which never decreases.
     fn advance(&mut self, t_us: u64);

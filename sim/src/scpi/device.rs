@@ -1,4 +1,4 @@
-//! An instrument as its interface sees it: message queue, common commands, execution in time, output queue.
+//! An instrument seen from its interface: message queue, common commands, execution times, output queue.
 
 use std::collections::VecDeque;
 
@@ -11,29 +11,29 @@ use crate::fault::instrument::{InstrumentFault as Fault, InstrumentFaults};
 /// Time that a common command takes, microseconds.
 const COMMON_US: u64 = 300;
 
-/// Entries that the error queue holds.
+/// Depth of the error queue.
 const DEPTH: usize = 20;
 
 /// One instrument behind its interface.
 pub struct Device {
     /// Name in the file of instruments.
     pub name: String,
-    /// Registers and errors.
+    /// Status registers and error queue.
     pub status: Status,
-    /// Replies with the instants at which they are complete, terminators included.
+    /// Replies, terminators included, each with the instant at which it is complete, microseconds.
     pub outbox: VecDeque<(u64, Vec<u8>)>,
     instrument: Box<dyn Instrument>,
     messages: VecDeque<Message>,
-    /// Reply of the present message so far.
+    /// Reply to the present message so far.
     reply: Option<Vec<u8>>,
-    /// Last reply was an indefinite one (`*IDN?`), after which no query may follow.
+    /// True when the last reply was an indefinite one (`*IDN?`): no query may follow in this message.
     indefinite: bool,
-    /// Query that waits for the end of the measurement.
+    /// Query, or `*WAI`, that waits for the end of the measurement.
     waiting: Option<Unit>,
-    /// True after `*OPC` until the measurement ends.
+    /// True from `*OPC` until the measurement ends.
     complete: bool,
     free_us: u64,
-    /// Instant of a power cycle that has not happened yet.
+    /// Instant of a power cycle that is still to happen.
     cycle_us: Option<u64>,
     /// True while the front panel has control.
     local: bool,
@@ -45,7 +45,7 @@ struct Message {
 }
 
 impl Device {
-    /// Switches the instrument on.
+    /// Creates an instrument in its state at power-on.
     pub fn new(name: String, instrument: Box<dyn Instrument>) -> Self {
         Self {
             name,
@@ -63,7 +63,7 @@ impl Device {
         }
     }
 
-    /// Takes a message; it runs when those before it are done.
+    /// Queues a message; it runs after all earlier ones.
     pub fn receive(&mut self, message: &[u8], at_us: u64, faults: &mut InstrumentFaults) {
         let mut strikes = |fault| faults.strikes(fault, &self.name, at_us).is_some();
         if strikes(Fault::ErrorsOverflow) {
@@ -90,7 +90,7 @@ impl Device {
         self.complete = false;
     }
 
-    /// Checks whether a message or query is still in work.
+    /// Checks whether a message or a waiting query is still in progress.
     pub fn is_busy(&self) -> bool {
         self.waiting.is_some() || !self.messages.is_empty()
     }
@@ -109,7 +109,7 @@ impl Device {
         [job, unit].into_iter().flatten().min()
     }
 
-    /// Returns an instant before which no further reply leaves; `None` while nothing is expected.
+    /// Returns an instant before which no further reply leaves; `None` when no message or query is pending.
     pub fn reply_us(&self) -> Option<u64> {
         match (&self.waiting, self.instrument.end_us()) {
             (Some(_), Some(end_us)) => Some(end_us),
@@ -121,7 +121,7 @@ impl Device {
         }
     }
 
-    /// Performs what is due at `t_us`.
+    /// Carries out what is due at `t_us`: a power cycle, a step of the measurement, or the next unit of a message.
     pub fn tick(&mut self, t_us: u64, circuit: &mut dyn Circuit, faults: &mut InstrumentFaults) {
         let at = &mut Moment {
             now_us: t_us,
@@ -287,7 +287,7 @@ impl Device {
         self.finish(t_us);
     }
 
-    /// Replaces a reply when a fault strikes its content.
+    /// Returns the reply, altered when a fault strikes its content.
     fn altered(
         &self,
         unit: &Unit,
@@ -306,7 +306,7 @@ impl Device {
         }
     }
 
-    /// Queues an error; a command error ends the message.
+    /// Queues an error; a command error also discards the rest of the message.
     fn fail(&mut self, failure: Failure) {
         self.status.push(failure);
         if (-199..=-100).contains(&failure.0)
@@ -316,7 +316,7 @@ impl Device {
         }
     }
 
-    /// Sends the reply when the message has no further unit.
+    /// Ends the present message after its last unit, and sends its reply.
     fn finish(&mut self, t_us: u64) {
         let ended = self.messages.front().is_some_and(|it| it.units.is_empty());
         if self.waiting.is_some() || !ended {

@@ -1,4 +1,4 @@
-//! File of instruments: what `sim --instruments` serves.
+//! The file of instruments that `sim --instruments` serves.
 
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
@@ -20,15 +20,15 @@ use crate::module::setting;
 use crate::shared::{check_targets, split};
 use crate::table::{Entry, Table};
 
-/// Range of the load, ohms; its time constant with a snubber is short against a cycle of the line.
+/// Permitted load resistance, ohms: with a snubber it gives a time constant short against a cycle of the line.
 const LOAD_OHM: RangeInclusive<f64> = 0.1..=10_000.0;
 
-/// Link of a host.
+/// Link by which a host reaches an instrument or adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Link {
     /// TCP socket on the loopback interface; port 0 chooses a free one.
     Tcp(u16),
-    /// Pseudo-terminal at a rate, baud.
+    /// Pseudo-terminal at this baud rate.
     Serial(u32),
 }
 
@@ -63,7 +63,7 @@ pub fn build(file: &Path, seed: u64, faults: &[String]) -> Result<SharedBench, S
     built(&Table::of_file(file)?, seed, faults)
 }
 
-/// Builds the instruments of a text.
+/// Builds the instruments from the text of such a file.
 ///
 /// # Errors
 /// Fails as [`build`] does.
@@ -112,7 +112,7 @@ fn built(keys: &Table, seed: u64, faults: &[String]) -> Result<SharedBench, SimE
     }))
 }
 
-/// Reads a name that no instrument or adapter before has; a fault finds its target by the name.
+/// Reads a name; fails when an instrument or adapter already has it, because faults find their targets by name.
 fn name(keys: &Table, names: &mut BTreeSet<String>) -> Result<String, ConfigError> {
     let name: String = keys.get("name")?;
     match names.insert(name.clone()) {
@@ -153,7 +153,7 @@ fn attach(
     Ok(())
 }
 
-/// Reads the keys of a model: a digitizer has channels, any other model one pair of terminals.
+/// Reads the keys that depend on the model: a digitizer has channels, any other model has one pair of terminals.
 fn fitting(keys: &Table, model: Model) -> Result<Fitting, ConfigError> {
     let latency_ms = setting::number(keys, "latency_ms", 0.0..=1e6)?;
     let (mut at, mut channels) = (None, Vec::new());
@@ -176,7 +176,7 @@ fn fitting(keys: &Table, model: Model) -> Result<Fitting, ConfigError> {
     })
 }
 
-/// Reads what the instruments measure: resistors, or a relay with a line.
+/// Reads the circuit that the instruments measure: resistors, or a relay with a line.
 fn circuit(keys: Option<Table>, seed: u64) -> Result<Box<dyn Circuit>, ConfigError> {
     let keys = match keys {
         Some(keys) => keys,
@@ -205,7 +205,7 @@ fn circuit(keys: Option<Table>, seed: u64) -> Result<Box<dyn Circuit>, ConfigErr
     Ok(circuit)
 }
 
-/// Returns the layer of faults of the command line.
+/// Returns the active faults of the command line.
 fn active(
     faults: &[String],
     seed: u64,

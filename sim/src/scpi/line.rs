@@ -1,4 +1,4 @@
-//! Voltage of an AC source with drift and distortion.
+//! Line voltage from an AC source, with drift and distortion.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -11,15 +11,15 @@ use crate::module::tolerances::stream;
 
 /// Time constant of the slow drift, seconds.
 const DRIFT_S: f64 = 5.0;
-/// Interval at which the drift is drawn, microseconds.
+/// Interval between two draws of the drift, microseconds.
 const DRIFT_STEP_US: u64 = 20_000;
 
-/// Line of a load circuit.
+/// Line that feeds the load circuit.
 pub struct Line {
     drive: Drive,
     since_us: u64,
     rng: ChaCha8Rng,
-    /// Relative deviation of the amplitude, and of the frequency in hertz.
+    /// Relative deviation of the amplitude; the next field is the deviation of the frequency in hertz.
     amplitude: f64,
     deviation_hz: f64,
     phase_rad: f64,
@@ -28,7 +28,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Creates a line without voltage; a real one drifts by 1 % and has 2 % of third and fifth harmonic.
+    /// Creates a line without voltage; with `real` the voltage drifts by 1 % and has 2 % of third and fifth harmonics.
     pub fn new(seed: u64, real: bool) -> Self {
         Self {
             drive: Drive::Open,
@@ -83,7 +83,7 @@ impl Line {
         self.phase_rad.to_degrees().rem_euclid(360.0)
     }
 
-    /// Returns the volts `ahead_us` after the present instant; a negative time is before it.
+    /// Returns the volts at `ahead_us` microseconds after the present instant; a negative time lies before it.
     pub fn volts(&self, ahead_us: f64) -> f64 {
         let Drive::Sine { rms_v, .. } = self.drive else {
             return 0.0;

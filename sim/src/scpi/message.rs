@@ -1,15 +1,16 @@
-//! Program messages: framing of a byte stream, units, headers and parameters as IEEE 488.2 and SCPI define them.
+//! Program messages: framing of a byte stream, message units, headers and parameters as IEEE 488.2 and SCPI define
+//! them.
 
 use super::status::Failure;
 
-/// Longest message without its blocks, bytes; a longer one overruns the input buffer.
+/// Greatest length of a message without its blocks, bytes; a longer one overruns the input buffer.
 const LONGEST: usize = 8_192;
 
-/// Values of SCPI for infinity, which an over-range reading has too, and for no number.
+/// Numbers by which SCPI encodes infinity (also an over-range reading) and, in the next constant, not a number.
 const INFINITE: f64 = 9.9e37;
 const NOT_A_NUMBER: f64 = 9.91e37;
 
-/// Cuts a byte stream into messages at line feeds outside quotes and definite blocks.
+/// Splits a byte stream into messages at line feeds; a line feed inside a definite block is data.
 #[derive(Debug, Default)]
 pub struct Framer {
     bytes: Vec<u8>,
@@ -22,14 +23,14 @@ enum Inside {
     Plain,
     Quotes(u8),
     Hash,
-    /// Digits of a block length still to come, and the length so far.
+    /// Number of digits of the block length still to come, and the length so far.
     Length(u8, usize),
-    /// Bytes of a block still to come.
+    /// Number of bytes of a block still to come.
     Block(usize),
 }
 
 impl Framer {
-    /// Takes one byte; returns the message that it ends, without its terminator.
+    /// Adds one byte; returns the message that this byte ends, without its terminator.
     ///
     /// # Errors
     /// Fails with -363 when the message is longer than the input buffer.
@@ -56,7 +57,7 @@ impl Framer {
         message
     }
 
-    /// Discards what has arrived of a message.
+    /// Discards the partial message.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
@@ -83,10 +84,10 @@ impl Inside {
     }
 }
 
-/// One unit of a message: a command or a query with its parameters.
+/// One message unit: a command or a query, with its parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
-    /// Upper-case nodes of the header; a common command has one that begins with `*`.
+    /// Nodes of the header in upper case; a common command has one node, which begins with `*`.
     pub nodes: Vec<String>,
     /// True for a query.
     pub query: bool,
@@ -94,7 +95,7 @@ pub struct Unit {
     pub parameters: Vec<Vec<u8>>,
 }
 
-/// Splits a message into units. A unit without leading colon continues the path of the unit before.
+/// Splits a message into units. A unit without a leading colon continues the path of the previous unit.
 pub fn units(message: &[u8]) -> Vec<Result<Unit, Failure>> {
     let mut path: Vec<String> = Vec::new();
     let units = split(message, b';');
@@ -156,7 +157,7 @@ fn unit_of(text: &[u8], path: &mut Vec<String>) -> Result<Unit, Failure> {
     })
 }
 
-/// Splits at a separator outside quotes, blocks and channel lists.
+/// Splits a text at each separator outside quotes, blocks and channel lists.
 fn split(text: &[u8], separator: u8) -> Vec<&[u8]> {
     let (mut parts, mut from, mut depth) = (Vec::new(), 0, 0usize);
     let mut inside = Inside::Plain;
@@ -198,10 +199,11 @@ impl Unit {
         Ok(text.trim_matches(['"', '\'']).to_ascii_uppercase())
     }
 
-    /// Returns the index of the choice that a parameter selects; each is a pattern of short and long form.
+    /// Returns the index of the choice that the first parameter selects; each choice is a pattern of short and long
+    /// form.
     ///
     /// # Errors
-    /// Fails with -109 without a parameter, with -224 when it is no choice.
+    /// Fails with -109 without a parameter, with -224 when the parameter is none of the choices.
     pub fn choice(&self, choices: &[&str]) -> Result<usize, Failure> {
         let word = self.word(0)?;
         let word = word.strip_suffix(":DC").unwrap_or(&word);
@@ -209,10 +211,10 @@ impl Unit {
         known.ok_or(Failure::ILLEGAL_VALUE)
     }
 
-    /// Returns a number within limits; `MIN`, `MAX` and `DEF` give the lower, the upper limit and the default.
+    /// Returns a number within limits; `MIN`, `MAX` and `DEF` give the lower limit, the upper limit and the default.
     ///
     /// # Errors
-    /// Fails with -109, -104 or -222 when the parameter is missing, no number, or outside the limits.
+    /// Fails with -109 when the parameter is missing, with -104 when it is no number, with -222 outside the limits.
     pub fn number(&self, at: usize, least: f64, most: f64, default: f64) -> Result<f64, Failure> {
         let word = self.word(at)?;
         let number = match word.as_str() {
@@ -231,7 +233,7 @@ impl Unit {
     /// Returns a boolean: ON, OFF or a number, of which 0 means off.
     ///
     /// # Errors
-    /// Fails with -109 or -104 when the parameter is missing or no boolean.
+    /// Fails with -109 when the parameter is missing, with -104 when it is no boolean.
     pub fn boolean(&self) -> Result<bool, Failure> {
         match self.word(0)?.as_str() {
             "ON" => Ok(true),
@@ -309,7 +311,7 @@ fn fits(word: &str, node: &str, suffixes: &mut Vec<u32>) -> bool {
     }
 }
 
-/// Parses NR1, NR2, NR3, `#H`, `#Q`, `#B`, INF and NAN with an optional unit and its prefix.
+/// Parses a number (NR1, NR2, NR3, `#H`, `#Q`, `#B`, INF or NAN) with an optional unit and unit prefix.
 fn with_unit(word: &str) -> Option<f64> {
     for (prefix, radix) in [("#H", 16), ("#Q", 8), ("#B", 2)] {
         if let Some(digits) = word.strip_prefix(prefix) {
@@ -339,7 +341,7 @@ fn with_unit(word: &str) -> Option<f64> {
     Some(number * scale(word[end..].trim())?)
 }
 
-/// Returns the factor of a unit with its prefix; `M` means milli but in MHZ and MOHM.
+/// Returns the factor of a unit with its prefix; `M` means milli except in MHZ and MOHM.
 fn scale(unit: &str) -> Option<f64> {
     if unit.is_empty() {
         return Some(1.0);
@@ -360,7 +362,7 @@ fn scale(unit: &str) -> Option<f64> {
     }
 }
 
-/// Formats a number as NR3 with eight significant digits; infinity and no number get the values of SCPI.
+/// Formats a number as NR3 with eight significant digits; infinity and NaN become the SCPI values for them.
 pub fn nr3(value: f64) -> String {
     let value = match value {
         value if value.is_nan() => NOT_A_NUMBER,

@@ -26,7 +26,7 @@ impl Passive {
         }
     }
 
-    /// Returns voltage and current at the output while the line feeds it; an open output has the whole line.
+    /// Returns voltage and current at the output while the line feeds it; an open output has the full line voltage.
     fn fed_by_line(&self) -> Reading {
         let line_v = self.sources.line.volts(0.0);
         let amps = line_v / (self.load_ohm + self.output_ohm);

@@ -1,4 +1,4 @@
-//! One link of a host: bytes in, bytes out at their instants, faults between.
+//! One link of a host: incoming bytes, outgoing bytes with their instants, and the faults between.
 
 use super::adapter::{Adapter, Sent};
 use super::device::Device;
@@ -6,10 +6,10 @@ use super::file::Link;
 use super::message::Framer;
 use crate::fault::instrument::{InstrumentFault as Fault, InstrumentFaults};
 
-/// Most pieces of a reply that leaves byte by byte, a millisecond apart.
+/// Greatest number of pieces, one millisecond apart, into which a fault splits a reply.
 const PIECES: usize = 200;
 
-/// What leaves a port.
+/// What a port sends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Out {
     /// Bytes in one piece.
@@ -18,7 +18,7 @@ pub enum Out {
     Close,
 }
 
-/// What a port leads to.
+/// Instrument or adapter behind a port.
 pub enum Behind {
     /// One instrument, by its index.
     Instrument(usize),
@@ -35,9 +35,10 @@ pub struct Port {
     behind: Behind,
     framer: Framer,
     out: Vec<(u64, Out)>,
-    /// A reply that waits for the next one.
+    /// A reply that a fault holds back until the next one.
     held: Vec<u8>,
-    /// Instant until which the port sends nothing: the last bytes are on the wire, or the instrument pauses.
+    /// Instant until which the port sends nothing more: until then earlier bytes occupy the wire, or a fault pauses the
+    /// instrument.
     free_us: u64,
     /// Instant at which the last received character is complete.
     received_us: u64,
@@ -58,7 +59,7 @@ impl Port {
         }
     }
 
-    /// Returns the name of each instrument behind the port, which is at `place`, with its link.
+    /// Returns each instrument behind the port: its name, and its link with the port at `place`.
     pub fn links(&self, place: &str, devices: &[Device]) -> Vec<(String, String)> {
         match &self.behind {
             Behind::Instrument(number) => vec![(devices[*number].name.clone(), place.to_owned())],
@@ -72,14 +73,14 @@ impl Port {
         }
     }
 
-    /// Accepts a host; `false` when a fault keeps the port busy.
+    /// Accepts a host; returns `false` when a fault keeps the port busy.
     pub fn open(&mut self, now_us: u64, faults: &mut InstrumentFaults) -> bool {
         faults
             .strikes(Fault::PortBusy, &self.name, now_us)
             .is_none()
     }
 
-    /// Forgets the host and the replies still to come; a fault leaves half a command in the input.
+    /// Discards the host's pending replies and partial message; a fault leaves half a command in the input.
     pub fn close(&mut self, now_us: u64, devices: &mut [Device], faults: &mut InstrumentFaults) {
         self.out.clear();
         self.held.clear();
@@ -96,7 +97,7 @@ impl Port {
         }
     }
 
-    /// Takes bytes of the host; on a serial link each takes its character time.
+    /// Accepts bytes from the host; on a serial link each byte takes its character time.
     pub fn receive(
         &mut self,
         bytes: &[u8],
@@ -145,7 +146,7 @@ impl Port {
         }
     }
 
-    /// Sends a reply with the faults of the link.
+    /// Queues a reply for sending, altered by the faults of the link.
     fn send(&mut self, at_us: u64, bytes: Vec<u8>, name: &str, faults: &mut InstrumentFaults) {
         let port = self.name.clone();
         let mut strikes = |fault| {
@@ -203,7 +204,7 @@ impl Port {
         self.free_us
     }
 
-    /// Removes and returns what leaves by now.
+    /// Removes and returns everything that has left the port up to `now_us`.
     pub fn due(&mut self, now_us: u64) -> Vec<Out> {
         let (due, later): (Vec<_>, _) = self.out.drain(..).partition(|(at_us, _)| *at_us <= now_us);
         self.out = later;
@@ -225,7 +226,7 @@ impl Port {
     }
 }
 
-/// Damages a block.
+/// Damages the reply when it is a block and a fault strikes.
 fn damaged(mut bytes: Vec<u8>, strikes: &mut impl FnMut(Fault) -> Option<u64>) -> Vec<u8> {
     if bytes.first() != Some(&b'#') {
         return bytes;

@@ -15,11 +15,11 @@ use crate::error::SimError;
 use crate::pace::Pace;
 use crate::pty::tty::Tty;
 
-/// Longest time without a look at the port while a reply is expected: its instant may depend on a trigger.
+/// Longest time between two checks of the port while a reply is pending: its instant may depend on a trigger.
 const LOOK_US: u64 = 20_000;
-/// Interval at which the circuit advances in real time, so that it never has to catch up on hours.
+/// Interval at which the circuit advances in real time, so that it never has to catch up on hours at once.
 const BEAT: Duration = Duration::from_millis(50);
-/// Size of a stream in virtual time, bytes.
+/// Buffer size of a stream in virtual time, bytes.
 const ROOM: usize = 1 << 16;
 
 /// Clock of the links.
@@ -45,8 +45,8 @@ impl Clock {
     }
 }
 
-/// Opens every port on the current runtime and serves it until the runtime ends; returns the name of each instrument with
-/// its link, as `relayrig instrument --link` takes it.
+/// Opens every port on the current runtime and serves it until the runtime ends. Returns each instrument's name and
+/// link, in the form of `relayrig instrument --link`.
 ///
 /// # Errors
 /// Fails when the system refuses a socket or a pseudo-terminal.
@@ -65,7 +65,7 @@ pub async fn real_time(bench: &SharedBench) -> Result<Vec<(String, String)>, Sim
     Ok(links)
 }
 
-/// Advances the bench while no host asks for anything.
+/// Advances the bench at regular intervals, also while no host sends anything.
 async fn beat(bench: SharedBench, clock: Clock) {
     loop {
         sleep(BEAT).await;
@@ -73,7 +73,7 @@ async fn beat(bench: SharedBench, clock: Clock) {
     }
 }
 
-/// Opens a port and starts to serve it; returns its place.
+/// Opens a port and starts to serve it; returns its place (`tcp:HOST:PORT`, `serial:PATH:BAUD`).
 async fn open(bench: SharedBench, number: usize, link: Link, clock: Clock) -> io::Result<String> {
     match link {
         Link::Tcp(port) => {
@@ -90,7 +90,7 @@ async fn open(bench: SharedBench, number: usize, link: Link, clock: Clock) -> io
     }
 }
 
-/// Serves one host after the other; the next one waits until the present one leaves.
+/// Serves one host at a time; the next one waits until the present one disconnects.
 async fn accept(bench: SharedBench, number: usize, listener: TcpListener, clock: Clock) {
     loop {
         let Ok((mut stream, _)) = listener.accept().await else {
@@ -105,7 +105,8 @@ async fn accept(bench: SharedBench, number: usize, listener: TcpListener, clock:
     }
 }
 
-/// Serves a terminal, whose hosts come and go unseen; a connection that a fault ends goes on at once.
+/// Serves a terminal, which does not show when hosts come and go; after a fault ends a connection, the next begins at
+/// once.
 async fn keep(bench: SharedBench, number: usize, mut terminal: UnixStream, clock: Clock) {
     while converse(&bench, number, &mut terminal, clock).await.is_ok() {
         bench.close(number, clock.now_us());
@@ -137,8 +138,8 @@ impl Plug {
     }
 }
 
-/// Returns a connector per port on the current runtime, whose clock is paused; one rig microsecond is one
-/// millisecond of the runtime.
+/// Returns each port's name and connector. The ports run on the current runtime, whose clock is paused; one microsecond
+/// of rig time is one millisecond of that clock.
 pub fn virtual_time(bench: &SharedBench) -> Vec<(String, Plug)> {
     let pace = Pace::start();
     let plug = |(number, (name, _)): (usize, (String, Link))| {

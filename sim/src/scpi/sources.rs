@@ -1,4 +1,4 @@
-//! Sources of all terminals, as the present circuit sees them.
+//! Sources at all terminals of a circuit, as they are at the present instant.
 
 use super::circuit::{Drive, Terminal};
 use super::line::Line;
@@ -49,7 +49,7 @@ impl Sources {
         }
     }
 
-    /// Returns the source at the input: the source-measure unit, or the pulse source while the unit is off.
+    /// Returns the source at the input: the source-measure unit, or the pulse source while the unit's output is off.
     pub fn at_input(&self) -> Drive {
         match (self.input, self.pulse) {
             (Drive::Open, Drive::Pulses(pulses)) => Drive::Voltage {
@@ -62,7 +62,7 @@ impl Sources {
         }
     }
 
-    /// Returns the time to the next edge of the pulses, microseconds from 1; `None` without a further edge.
+    /// Returns the time to the next edge of the pulses, at least 1 microsecond; `None` without a further edge.
     pub fn edge_us(&self) -> Option<u64> {
         let Drive::Pulses(pulses) = self.pulse else {
             return None;

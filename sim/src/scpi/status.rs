@@ -53,9 +53,9 @@ impl Failure {
 pub struct Status {
     /// Standard event status register.
     pub event: u8,
-    /// Mask of the event register.
+    /// Enable mask of the event register (`*ESE`).
     pub event_enable: u8,
-    /// Mask of the status byte.
+    /// Enable mask of the status byte (`*SRE`).
     pub service_enable: u8,
     errors: VecDeque<Failure>,
     depth: usize,
@@ -73,7 +73,7 @@ impl Status {
         }
     }
 
-    /// Queues an error; in a full queue the last entry becomes -350.
+    /// Queues an error; when the queue is full, its last entry becomes -350.
     pub fn push(&mut self, failure: Failure) {
         self.event |= failure.event();
         if self.errors.len() < self.depth {
@@ -84,7 +84,7 @@ impl Status {
         }
     }
 
-    /// Fills the queue to overflow.
+    /// Queues errors until the queue overflows.
     pub fn overflow(&mut self) {
         for _ in 0..=self.depth {
             self.push(Failure::UNDEFINED_HEADER);
@@ -107,7 +107,7 @@ impl Status {
         self.errors.clear();
     }
 
-    /// Returns the status byte; `message` tells whether a reply is available.
+    /// Returns the status byte; `message` sets the bit for an available reply.
     pub fn byte(&self, message: bool) -> u8 {
         let mut byte = u8::from(!self.errors.is_empty()) << 2
             | u8::from(message) << 4

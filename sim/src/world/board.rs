@@ -1,9 +1,9 @@
 //! The interface board: coil supply, contact source, monitors, references and interlocks.
 //!
-//! Drive and source need the closed probe-up chain. The source waits until the selected contact has been closed
-//! for a while; it switches off ahead of any change of drive, selection or direction, which therefore takes
-//! effect later. The coil suppression changes only without coil current. Every terminal follows its circuit, with
-//! or without a part.
+//! Coil drive and contact source need the closed probe-up chain. The source waits until the selected contact has been
+//! closed for a while. It switches off before any change of drive, selection or direction, which therefore takes effect
+//! later. The coil suppression changes only without coil current. Every measuring terminal follows its circuit, with or
+//! without a part.
 
 mod circuit;
 pub mod supply;
@@ -18,7 +18,7 @@ use crate::config::References;
 use crate::truth::Overdrive;
 use supply::{CoilSupply, SupplyRange};
 
-/// Largest resistance between force and sense at which a pin counts as connected.
+/// Greatest resistance between force and sense probe at which a pin counts as connected, ohm.
 const KELVIN_OHM: f64 = 5.0;
 
 /// Present state of drive, selection and direction.
@@ -48,7 +48,7 @@ pub struct Board {
     clamp_diode: bool,
     chain: bool,
     touching: bool,
-    /// Film on both coil probes together, ohm; the next field is its growth per touch.
+    /// Resistance of the film on both coil probes together, ohm; the next field is its growth per touch.
     film_ohm: f64,
     film_per_touch_ohm: f64,
     source_live: bool,
@@ -57,7 +57,7 @@ pub struct Board {
 }
 
 impl Board {
-    /// Creates a board with drawn errors.
+    /// Creates a board; draws its errors.
     pub fn new(
         table: &BoardTable,
         reference: &References,
@@ -159,7 +159,7 @@ impl Board {
         self.refresh(part);
     }
 
-    /// Makes each further touch add this film to both coil probes together.
+    /// Lets each further touch of the probes add this film to both coil probes together, ohm.
     pub fn add_film_per_touch(&mut self, per_touch_ohm: f64) {
         self.film_per_touch_ohm = per_touch_ohm;
     }
@@ -179,12 +179,12 @@ impl Board {
         self.supply.overdrives()
     }
 
-    /// Returns the total open time of a gate, microseconds.
+    /// Returns the total open time of a gate so far, microseconds.
     pub fn gate_open_us(&self, gate: usize) -> f64 {
         self.gates.open_us(gate, self.now_us)
     }
 
-    /// Returns a digital signal of the board; `None` for a signal of another source.
+    /// Returns a digital signal of the board; `None` for a signal that the board does not drive.
     pub fn signal(&self, signal: In, part: Option<&Specimen>) -> Option<bool> {
         let kelvin = |pin: usize| {
             let film_ohm = if pin < 2 { self.film_ohm / 2.0 } else { 0.0 };
@@ -273,7 +273,7 @@ impl Board {
         self.refresh(part);
     }
 
-    /// Passes a contact event, as the monitor detects it, to the latch.
+    /// Passes a contact event that the monitor detects to the latch, if it is the selected one.
     fn contact_event(&mut self, contact: Contact, closed: bool, part: &Specimen) {
         let met = part.pins().contact(contact) && self.touching;
         if !met || self.commands.is_on(Out::ReferenceContact) {
@@ -288,7 +288,7 @@ impl Board {
         }
     }
 
-    /// Updates everything that follows at once from commands, probes and contacts.
+    /// Updates everything that follows without delay from commands, probes and contacts.
     fn refresh(&mut self, mut part: Option<&mut Specimen>) {
         let now = self.now_us;
         self.select_clamp(part.as_deref());
@@ -325,7 +325,7 @@ impl Board {
         }
     }
 
-    /// Passes the edge of the drive that starts a measurement, or the opposite edge, to the window flip-flop.
+    /// Passes an edge of the drive to the window flip-flop: the edge that starts a measurement, or the opposite one.
     fn edges_of_drive(&mut self) {
         let driving = self.switches.drive && self.chain;
         if driving == std::mem::replace(&mut self.driving, driving) {
@@ -345,7 +345,7 @@ impl Board {
         self.driving && self.meets(part) && !self.commands.is_on(Out::ReferenceCoil)
     }
 
-    /// Checks whether both coil probes touch the coil of the part.
+    /// Checks whether both coil probes touch the coil pins of the part.
     fn meets(&self, part: &Specimen) -> bool {
         self.touching && part.pins().input()
     }

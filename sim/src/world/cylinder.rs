@@ -13,7 +13,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// Creates a cylinder at rest with a mean stroke time.
+    /// Creates a cylinder at rest; a full stroke takes `mean_ms` on average.
     pub fn new(mean_ms: f64) -> Self {
         Self {
             mean_us: mean_ms * 1000.0,
@@ -50,8 +50,8 @@ impl Cylinder {
         self.far
     }
 
-    /// Starts a stroke to an end. A full stroke takes the mean time multiplied by `scatter`; `stalls` makes it
-    /// stop short of the far end. Returns false if that end was already commanded.
+    /// Starts a stroke to an end. A full stroke takes the mean time multiplied by `scatter`; with `stalls` the cylinder
+    /// stops short of the far end. Returns false when that end was already commanded.
     pub fn send(&mut self, far: bool, now_us: u64, scatter: f64, stalls: bool) -> bool {
         if far == self.far {
             return false;

@@ -2,8 +2,8 @@
 
 use super::draw::{Draw, Subject};
 
-/// Returns the defect of a lot part: each block of (kinds / rate) parts contains every kind once, at a place that
-/// the seed draws.
+/// Returns the defect of a lot part, if any. Each block of (kinds / rate) parts contains every kind once, at a place
+/// that the seed draws; `rate_pct` is in percent.
 pub fn of_part<D: Copy>(kinds: &[D], seed: u64, index: u64, rate_pct: f64) -> Option<D> {
     if rate_pct <= 0.0 {
         return None;

@@ -1,4 +1,4 @@
-//! Random draws, one ChaCha stream per subject, so that a part does not depend on the order of drawing.
+//! Random draws; each subject has its own ChaCha stream, so that a part does not depend on the order of drawing.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

@@ -1,4 +1,4 @@
-//! Counts falling edges at a digital input, with the 5 ms filter of an event counter.
+//! Counter of falling edges at a digital input, with the 5 ms filter of a module's event counter.
 
 /// Shortest low level that counts, microseconds.
 const FILTER_US: u64 = 5_000;
@@ -27,7 +27,7 @@ impl Edges {
         }
     }
 
-    /// Returns the number of edges so far.
+    /// Returns the number of counted falling edges so far.
     pub fn count(&mut self, now_us: u64) -> u64 {
         self.settle(now_us);
         self.count

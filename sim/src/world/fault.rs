@@ -1,5 +1,5 @@
-//! Faults of machine and parts, by name. A fault acts where the thing is simulated, in this folder: drives and
-//! air in `mechanism.rs`, handing over of parts in `mechanism/parts.rs`, sensors and buttons in
+//! Faults of machine and parts, by name. The code of a fault is where the affected device is simulated, in this folder:
+//! drives and air in `mechanism.rs`, handing over of parts in `mechanism/parts.rs`, sensors and buttons in
 //! `mechanism/sensors.rs`, the part itself in `magazine.rs`, the board in `mod.rs`.
 
 use std::path::Path;
@@ -15,7 +15,7 @@ pub enum FaultKind {
     Timed,
     /// Number of a lot part in the order of leaving the magazine, from 1; the fault strikes once.
     OfPart,
-    /// Parameter of the whole rig, from its start.
+    /// Parameter of the whole rig, which applies from the start.
     OfStart,
 }
 
@@ -105,7 +105,7 @@ impl WorldFaults {
         self.0.push((fault, part));
     }
 
-    /// Returns every active value of one fault.
+    /// Returns the values of all active faults of this kind.
     pub fn values(&self, fault: Fault) -> impl Iterator<Item = f64> + '_ {
         self.0
             .iter()
@@ -113,12 +113,12 @@ impl WorldFaults {
             .map(|(_, v)| *v)
     }
 
-    /// Returns the seed of noise and temperatures, where it differs from the seed of the rig.
+    /// Returns the seed of noise and temperatures, if it differs from the seed of the rig.
     pub fn noise_seed(&self) -> Option<u64> {
         self.values(Fault::NoiseSeed).next().map(|it| it as u64)
     }
 
-    /// Returns the range in which the relays of the coil supply shall stick, if any.
+    /// Returns the range in which the relays of the coil supply stick, if that fault is active.
     ///
     /// # Errors
     /// Fails when no range has that code.
@@ -145,12 +145,12 @@ impl WorldFaults {
         })
     }
 
-    /// Cancels every fault that waits for its part.
+    /// Removes all faults: those that wait for their part, and the parameters of the whole rig such as `refeed`.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Removes a fault that strikes at this part (number from 1); returns true if it was active.
+    /// Removes the fault if it strikes at this part (number from 1); returns true when it strikes.
     pub fn strikes(&mut self, fault: Fault, part: Option<u64>) -> bool {
         let hit = |(f, v): &(Fault, f64)| *f == fault && part == Some(*v as u64);
         let place = self.0.iter().position(hit);

@@ -1,12 +1,13 @@
 //! Window flip-flop, latch and the two counter gates of the interface board.
 //!
-//! - Window W: ARM clears it; the start event sets it while the latch is clear; the opposite edge clears it, and
-//!   so does the time-out after the latch.
+//! - Window W: ARM clears it; the start event sets it while the latch is clear; the opposite edge of the drive clears
+//!   it, and so does the time-out that the latch starts.
 //! - Latch L: the selected contact event sets it while W is set; ARM clears it.
 //! - Gate 0 = W and not L. Gate 1 = W and not the selected contact.
 //! - ARM with the reference contact selected opens both gates for the reference pulse instead.
 //!
-//! Each gate has its own delay, added (or subtracted, if negative) once per ARM when the gate first opens.
+//! Each gate has its own delay: the first time that a gate opens after an ARM, the delay lengthens its open time (or
+//! shortens it, if negative).
 
 /// The two counter gates with their flip-flops.
 #[derive(Debug, Clone)]
@@ -24,7 +25,7 @@ pub struct Gates {
 }
 
 impl Gates {
-    /// Creates gates 0 and 1 with their delays; a window whose latch is set closes `after_latch_us` later at the latest.
+    /// Creates gates 0 and 1 with their delays; a window closes at the latest `after_latch_us` after its latch is set.
     pub fn new(delay_us: [f64; 2], after_latch_us: f64) -> Self {
         Self {
             window: false,
@@ -56,7 +57,7 @@ impl Gates {
         self.total_us[gate] + running
     }
 
-    /// Clears both flip-flops; with a pulse length, opens both gates for that time.
+    /// Clears both flip-flops; with a pulse length it also opens both gates for that time.
     pub fn arm(&mut self, t_us: f64, pulse_us: Option<f64>) {
         self.window = false;
         self.latch = false;
@@ -76,7 +77,7 @@ impl Gates {
         }
     }
 
-    /// Closes the window: the drive of the coil has the edge opposite to the one that opened it.
+    /// Closes the window at the edge of the coil drive opposite to the edge that opened it.
     pub fn opposite(&mut self, t_us: f64) {
         self.window = false;
         self.window_ends_us = None;
@@ -92,7 +93,7 @@ impl Gates {
         }
     }
 
-    /// Sets the selected contact as the monitor detects it.
+    /// Sets the state of the selected contact that the monitor detects.
     pub fn contact(&mut self, t_us: f64, closed: bool) {
         if self.contact_closed != closed {
             self.contact_closed = closed;
@@ -100,13 +101,13 @@ impl Gates {
         }
     }
 
-    /// Returns the instant at which the window or the reference pulse times out next; `None` when neither runs.
+    /// Returns the next instant at which the window or the reference pulse times out; `None` when neither is running.
     pub fn next_us(&self) -> Option<f64> {
         let ends = [self.window_ends_us, self.pulse_ends_us];
         ends.into_iter().flatten().min_by(f64::total_cmp)
     }
 
-    /// Ends the reference pulse or the window that is due.
+    /// Ends the reference pulse or window whose time is over.
     pub fn expire(&mut self, t_us: f64) {
         if self.window_ends_us.is_some_and(|end| end <= t_us) {
             self.window = false;

@@ -20,11 +20,11 @@ pub struct Part {
     pub specimen: Specimen,
     /// Order of entering the nest, from 1; 0 before that, and for every reference part.
     pub seq: u64,
-    /// Number in the lot from 1, which faults of a part refer to; `None` for reference parts.
+    /// Number in the lot from 1, by which faults refer to the part; `None` for reference parts.
     pub number: Option<u64>,
     /// Serial number that the code on the part holds; `None` for reference parts, and on a rig without code reader.
     pub code: Option<String>,
-    /// True when a second body clings to this one.
+    /// True when a second body clings to this one and travels with it.
     pub double: bool,
     /// Places with the time of arrival, microseconds.
     pub path: Vec<(u64, Place)>,
@@ -69,7 +69,7 @@ impl Part {
     }
 }
 
-/// Parts in the order in which they leave: reference parts first.
+/// Parts in the order in which they leave: reference parts first, then the lot.
 #[derive(Debug, Clone)]
 pub struct Magazine {
     lot: Lot,
@@ -78,9 +78,9 @@ pub struct Magazine {
     parts: Option<u64>,
     /// Number of lot parts between two reference parts, once the lot has begun.
     reference_every: Option<u64>,
-    /// Number of reference parts and number of lot parts that have left.
+    /// Numbers of reference parts and of lot parts that have left.
     out: (u64, u64),
-    /// Values of `out` when the magazine was filled.
+    /// Value of `out` when the magazine was last filled.
     filled_at: (u64, u64),
     track_c: f64,
     ambient_c: f64,
@@ -116,7 +116,7 @@ impl Magazine {
         })
     }
 
-    /// Marks each lot part with a code, when the rig has a code reader.
+    /// Enables codes on the lot parts, for a rig with a code reader.
     pub fn with_codes(self, codes: bool) -> Self {
         Self { codes, ..self }
     }
@@ -146,7 +146,7 @@ impl Magazine {
         (self.since_filled().0 >= self.reference_parts_due()).then_some(self.out.1 + 1)
     }
 
-    /// Returns the number of reference parts that precede the next lot part.
+    /// Returns the number of reference parts that leave before the next lot part.
     fn reference_parts_due(&self) -> u64 {
         let lot = self.since_filled().1;
         let again = self.reference_every.map_or(0, |every| lot / every);
@@ -182,8 +182,8 @@ impl Magazine {
         })
     }
 
-    /// Creates lot part `index`, counted from 0. Under the fault `refeed` the same parts come round again, and the
-    /// scatter of their operations is drawn anew each time.
+    /// Creates lot part `index`, counted from 0. Under the fault `refeed` the same bodies come again and again, each
+    /// time with a new draw of the scatter of its operations.
     fn lot_part(&self, index: u64, now_us: u64, faults: &mut WorldFaults) -> Specimen {
         let noise = faults.noise_seed().unwrap_or(self.seed);
         let (seed, body) = self.body(index, faults);
@@ -199,7 +199,7 @@ impl Magazine {
         self.lot.part(seed, body, arrival)
     }
 
-    /// Returns seed and number (from 0) of the body that comes as lot part `index`.
+    /// Returns seed and number (from 0) of the body that appears as lot part `index`.
     fn body(&self, index: u64, faults: &WorldFaults) -> (u64, u64) {
         let asked = |fault| faults.values(fault).next().map(|it| it as u64);
         let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
@@ -214,7 +214,7 @@ impl Magazine {
         format!("R{seed:04X}-{:06}", body + 1)
     }
 
-    /// Creates a reference part; after the last one the first one repeats.
+    /// Creates reference part `index`; after the last one the first one follows again.
     fn reference_part(&self, index: u64, now_us: u64, faults: &WorldFaults) -> Option<Specimen> {
         let place = index - self.filled_at.0;
         let body = if place < self.lot.reference_parts() {

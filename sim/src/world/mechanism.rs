@@ -1,9 +1,9 @@
 //! Escapement, pusher, jaws, probe lift, sorter and gripper, and the parts that they move.
 //!
-//! Air and outputs move the cylinders; without either a cylinder returns to its rest end, and a bistable one
-//! keeps its position. Every stroke draws its own time. A part moves only by contact: the escapement drops it
-//! into an empty pocket, the pusher carries it to the nest, closed fingers lift it as sort z rises, and open
-//! fingers drop it. The emergency stop vents the air and cuts the power of the servo.
+//! Air and outputs move the cylinders; without air or without its output a cylinder returns to its rest end, and a
+//! bistable one keeps its position. Every stroke draws its own time. A part moves only by contact: the escapement drops
+//! it into an empty pocket, the pusher carries it to the nest, closed fingers lift it as sort z rises, and open fingers
+//! drop it. The emergency stop vents the air and cuts the power of the servo.
 
 mod parts;
 mod posture;
@@ -76,7 +76,7 @@ enum Scheduled {
     End(Fault),
 }
 
-/// Number of motion starts that are kept: a quarter of an hour of production.
+/// Number of motion starts that the mechanism keeps: a quarter of an hour of production.
 const MOTION_STARTS_KEPT: usize = 8_192;
 
 /// The mechanism with its parts.
@@ -162,7 +162,7 @@ impl Mechanism {
         &self.crashes
     }
 
-    /// Replaces the parts in the magazine by those that `load` prepares from the remaining faults.
+    /// Replaces the parts in the magazine by those that `load` returns; `load` gets the remaining faults.
     pub fn refill<E>(
         &mut self,
         load: impl FnOnce(&WorldFaults) -> Result<Magazine, E>,
@@ -199,7 +199,7 @@ impl Mechanism {
         }
     }
 
-    /// Cancels the faults that have not struck yet.
+    /// Cancels all faults; a fault that has struck keeps its effects.
     pub fn cancel_faults(&mut self) {
         self.faults.clear();
         self.scheduled
@@ -237,7 +237,7 @@ impl Mechanism {
         self.schedule();
     }
 
-    /// Carries out the events that are due at [`Mechanism::next_us`].
+    /// Carries out all events that are due at `now_us`.
     pub fn process(&mut self, now_us: u64) {
         self.watch(now_us);
         for stroke in CylinderId::ALL {
@@ -279,7 +279,7 @@ impl Mechanism {
         !self.is_disturbed(Fault::Air) && !self.is_disturbed(Fault::Estop)
     }
 
-    /// Checks whether every valve is off or the air is gone, so that only springs move cylinders.
+    /// Checks whether every valve is off or the air is gone: then only springs move cylinders.
     fn only_springs_move(&self) -> bool {
         let valves = [
             Out::EscapementRelease,
@@ -399,7 +399,7 @@ impl Mechanism {
                 self.disturbance_changed(now_us);
             }
             Scheduled::End(fault) => {
-                // A repeated fault lasts until the later end.
+                // When the same fault strikes again, it lasts until the later of both ends.
                 let first = self.disturbed.iter().position(|&other| other == fault);
                 first.map(|place| self.disturbed.remove(place));
                 self.disturbance_changed(now_us);

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the board. Every subject
-//! draws from a stream of its own, so the same seed and stimuli give the same world. The world reacts to its terminals
-//! alone, whatever the controller intends.
+//! has its own random stream, so that the same seed and stimuli give the same world. The world reacts to its terminals
+//! alone and knows nothing of the controller's intentions.
 
 pub mod axis;
 pub mod board;
@@ -185,7 +185,7 @@ impl World {
         }
     }
 
-    /// Makes the range relays of the supply stick, if that fault has not struck yet.
+    /// Makes the range relays of the supply stick if that fault is active and has not struck yet.
     fn stick_range(&mut self) {
         if let Some(range) = self.stuck_range.take() {
             self.board.stick(range);

@@ -1,4 +1,4 @@
-//! Replaces module `bodies` in a program without the feature `bodies`; detects no crash.
+//! Stands in for module `bodies` in a program without the feature `bodies`; detects no crash.
 
 use std::collections::BTreeSet;
 

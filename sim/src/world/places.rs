@@ -1,4 +1,4 @@
-//! Parts by place: each place owns its part, so no part is in two places.
+//! Parts by place: each place owns its part, so no part is in two places at once.
 
 use super::magazine::Part;
 use crate::truth::{BodyTruth, PartTruth, Place};
@@ -52,7 +52,7 @@ impl Places {
         all
     }
 
-    /// Returns every body that has left the magazine and is not falling, in no order.
+    /// Returns every body that has left the magazine and is not falling, in arbitrary order.
     pub fn bodies(&self) -> impl Iterator<Item = BodyTruth> + '_ {
         let inside = [&self.pocket, &self.pushed, &self.nest, &self.carried];
         let inside = inside.into_iter().flatten().flat_map(|part| part.bodies());

@@ -17,7 +17,7 @@ pub const ACTUATORS: [&str; 8] = [
 pub struct Posture {
     /// Travel of each actuator from rest, mm.
     pub mm: [f64; 8],
-    /// True when a part is in the pocket.
+    /// True when a part is at rest in the pocket.
     pub pocket: bool,
     /// True when a part is in front of the pusher, on its way to the nest or back.
     pub pushed: bool,
@@ -25,6 +25,6 @@ pub struct Posture {
     pub nest: bool,
     /// True when the fingers hold a part.
     pub held: bool,
-    /// True when a grip yields without damage: only springs move, or the fingers slide off.
+    /// True when a grip yields without damage, because only springs move or the fingers slide off.
     pub slack: bool,
 }

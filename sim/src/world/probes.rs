@@ -47,7 +47,7 @@ impl Supply {
 pub struct Pins {
     /// For each probe pair: the right pin is present.
     pub present: [bool; 5],
-    /// For each probe pair: force and sense probe touch metal, of whatever pin, so that the Kelvin test passes.
+    /// For each probe pair: force and sense probe touch metal of any pin, so that the Kelvin test passes.
     pub kelvin: [bool; 5],
 }
 
@@ -64,18 +64,18 @@ impl Pins {
         kelvin: [true, true, false, true, true],
     };
 
-    /// Removes the connection of a pin.
+    /// Removes the pin and its connection.
     pub fn lose(&mut self, pin: usize) {
         self.present[pin] = false;
         self.kelvin[pin] = false;
     }
 
-    /// Checks whether the board can drive the input.
+    /// Checks whether the coil probes reach both input pins, so that the board can drive the input.
     pub fn input(self) -> bool {
         self.present[0] && self.present[1]
     }
 
-    /// Checks whether the board can sense a contact.
+    /// Checks whether the probes reach the pins of a contact, so that the board can sense it.
     pub fn contact(self, contact: Contact) -> bool {
         let own = match contact {
             Contact::No => self.present[3],

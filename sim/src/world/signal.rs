@@ -1,6 +1,6 @@
 //! The fixed names of the signals; `rig.toml` wires each signal to a terminal by its name.
 
-/// Declares an enum by the names of its variants in files.
+/// Declares an enum whose variants have the given names in files.
 macro_rules! vocabulary {
     ($(#[$doc:meta])* $enum:ident { $($(#[$line:meta])* $name:ident = $text:literal),* $(,)? }) => {
         $(#[$doc])*
@@ -109,7 +109,7 @@ impl Commands {
         Self(if on { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// Checks whether a command has switched on since `before`.
+    /// Checks whether a command is on now and was off in `before`.
     pub fn rises(self, before: Self, out: Out) -> bool {
         self.is_on(out) && !before.is_on(out)
     }

@@ -1,7 +1,8 @@
 //! A specimen of any kind: drawn from its lot, probed by the interface board.
 //!
-//! This file lists the kinds, one variant for each; `table.rs` reads the table of each, `mod.rs` names its folder. A kind
-//! is a folder beside this file, with a lot that draws its parts and a part that implements [`ProbeInterface`].
+//! This file lists the kinds, one variant for each; `table.rs` reads the table of each kind, `mod.rs` declares its
+//! module. A kind is a folder beside this file, with a lot that draws its parts and a part that implements
+//! [`ProbeInterface`].
 
 use std::ops::{Deref, DerefMut};
 
@@ -17,7 +18,8 @@ use crate::truth::PartTruth;
 /// Reference temperature of true values, degrees Celsius.
 pub const REFERENCE_C: f64 = 23.0;
 
-/// Signals that the interface board finds on the pins of a specimen; a kind without contacts keeps the defaults.
+/// Behaviour of a specimen at its pins, as the interface board sees it; a kind without contacts keeps the default
+/// methods.
 pub trait ProbeInterface {
     /// Returns the pins that touch their probes.
     fn pins(&self) -> Pins;
@@ -39,7 +41,7 @@ pub trait ProbeInterface {
         None
     }
 
-    /// Notes that the current of the contact source flows through a contact.
+    /// Records that the current of the contact source flows through a contact.
     fn source_on(&mut self, _contact: Contact) {}
 
     /// Returns the thermal EMF in the contact circuit, volts.
@@ -91,7 +93,7 @@ pub struct Arrival {
     pub ambient_c: f64,
     /// Random stream of the part's operations.
     pub draw: Draw,
-    /// Index of a pin that misses its Kelvin probes; `None` when no pin does.
+    /// Index of a pin that misses its Kelvin probes; `None` when every pin meets them.
     pub dirty_pin: Option<usize>,
     /// True when the part is misoriented.
     pub misoriented: bool,
@@ -139,7 +141,7 @@ impl Lot {
         }
     }
 
-    /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another
+    /// Returns the reference part at an index, `None` past the last; with `other_day` the same body has another
     /// temperature.
     pub fn reference_part(
         &self,

@@ -61,7 +61,7 @@ table!(
     }
 );
 table!(
-    /// A fault that a command may request by name.
+    /// A fault that the command line may request by name.
     FaultSpec { unit: String, default: f64, help: String }
 );
 table!(
@@ -73,7 +73,7 @@ table!(
     }
 );
 
-/// Reads `sim.toml`, with a second world file on top.
+/// Reads `sim.toml`; a second world file overrides some of its keys.
 ///
 /// # Errors
 /// Fails when a file cannot be read, is not TOML, has an unknown key or a value of the wrong type, or describes

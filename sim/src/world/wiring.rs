@@ -58,7 +58,7 @@ pub fn at<S: Copy>(terminals: &Terminals<S>, module: &str, channel: u8) -> Optio
         .map(|(_, wire)| *wire)
 }
 
-/// Returns the signals at one module.
+/// Returns the signals at the terminals of one module.
 pub fn on<'a, S>(terminals: &'a Terminals<S>, module: &str) -> &'a [(u8, Wire<S>)] {
     terminals.get(module).map_or(&[], Vec::as_slice)
 }

@@ -1,5 +1,5 @@
-//! `relayrig bus monitor`: shows the traffic of a line, from a port that it only listens to, from a running controller, or
-//! from the trace of an alarm.
+//! `relayrig bus monitor`: shows the traffic of a line, from a port on which it only listens, from a running
+//! controller, or from the trace of an alarm.
 
 use super::PortArgs;
 use crate::cli::output::input;

@@ -25,7 +25,7 @@ Ctrl-C.")]
 pub struct ScanArgs {
     #[command(flatten)]
     port: PortArgs,
-    /// Bits per second; may be given several times. All rates of the protocol without it
+    /// Bits per second; may be given several times; without it, all rates of the protocol
     #[arg(long, value_parser = baud)]
     baud: Vec<u32>,
     /// Addresses, hexadecimal, FIRST-LAST
@@ -34,7 +34,8 @@ pub struct ScanArgs {
     /// Checksum on, off, or both
     #[arg(long, value_enum, default_value = "both")]
     checksum: Checksums,
-    /// Milliseconds until a reply; more for slow modules, converters in a network, a busy computer
+    /// Milliseconds that a module may take to reply, besides the time on the wire; more for slow modules, converters in
+    /// a network, a busy computer
     #[arg(long, value_name = "MS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=1_000))]
     allowance: u64,
     /// One JSON object per module
@@ -90,7 +91,7 @@ fn addresses(text: &str) -> Result<(u8, u8), ScanArgError> {
 /// Rates of the protocol, bits per second, the most likely first.
 const RATES: [u32; 8] = [115_200, 9_600, 19_200, 38_400, 57_600, 4_800, 2_400, 1_200];
 
-/// Number of further transactions with each found module, which show the spread of its latency.
+/// Number of further transactions with each module found; they show the spread of its latency.
 const REPETITIONS: usize = 16;
 
 pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<Exit> {

@@ -27,7 +27,7 @@ pub struct SendArgs {
     /// Add a checksum, and check that of the reply
     #[arg(long)]
     checksum: bool,
-    /// Milliseconds until the reply
+    /// Milliseconds that the module may take to reply, besides the time on the wire
     #[arg(long, value_name = "MS", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000))]
     allowance: u64,
     /// Model of the module, where a reply has several meanings
@@ -113,7 +113,7 @@ fn unambiguous(text: &[u8], model: Option<Model>) -> Option<Command> {
     }
 }
 
-/// Reads the setting that `command` writes; returns the reply and its meaning if the setting is in effect already.
+/// Reads back the setting that `command` writes; returns the reply and its meaning if the setting is already in effect.
 async fn in_effect(
     port: &mut SerialStream,
     settings: &LineSettings,
@@ -144,7 +144,7 @@ fn print_unchanged(args: &SendArgs, reply: &str, meaning: &str) -> anyhow::Resul
     Ok(Exit::Done)
 }
 
-/// Refuses a text that is no request of the protocol, and factory commands, which spoil a module.
+/// Refuses a text that is no request of the protocol, and factory commands, which can make a module unusable.
 fn checked(command: &str) -> anyhow::Result<&[u8]> {
     let text = command.as_bytes();
     let plain = text.iter().all(|byte| (0x20..0x7F).contains(byte));

@@ -48,7 +48,7 @@ pub(super) struct PartArgs {
     /// Production parts, reference parts (golden), or both
     #[arg(long, value_parser = checks::KINDS, default_value = "lot")]
     pub kind: String,
-    /// Only parts between a passed and a failed reference check
+    /// Only suspect parts: judged before a failed reference check and after the check before it
     #[arg(long)]
     pub suspect: bool,
     /// At most N parts, the first in order of judgement

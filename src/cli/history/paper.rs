@@ -52,13 +52,13 @@ fn of_locale(values: [String; 3]) -> Lang {
 }
 
 impl PaperArgs {
-    /// Returns paper of this language for the selected runs, made now.
+    /// Returns the settings of a page about the selected runs, in the chosen language.
     pub(super) fn paper_of(&self, archive: &Archive, filter: &Filter) -> anyhow::Result<Paper> {
         let language = LangArg::or_locale(self.lang);
         Ok(inquiry::paper::paper_of(archive, filter, language)?)
     }
 
-    /// Returns the settings of a printed page: its language, and now as the time of printing.
+    /// Returns the settings of a page in the chosen language, without the mark SIMULATION.
     pub fn paper(&self) -> Paper {
         inquiry::paper::paper(LangArg::or_locale(self.lang))
     }

@@ -47,7 +47,7 @@ fn dispatch(command: &Command) -> anyhow::Result<Exit> {
         out.json(&result)?;
     } else {
         table(&result, &mut out)?;
-        // The method has no published factors for larger studies.
+        // For larger studies the average and range method has no published factors.
         if let Ok(by_ranges) = average_and_range(&readings) {
             writeln!(out)?;
             table(&by_ranges, &mut out)?;

@@ -19,7 +19,7 @@ pub struct RestoreArgs {
     replace: bool,
 }
 
-/// Runs the command; a fault that the check of the backup finds is an answer (status 1).
+/// Runs the command; a fault that the check of the backup finds gives exit status 1, not an error.
 pub fn run(files: &Files, args: &RestoreArgs) -> anyhow::Result<Exit> {
     let backup = Contents::find(&args.backup)?;
     let mut out = Output::stdout();

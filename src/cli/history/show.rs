@@ -21,7 +21,7 @@ pub(super) struct ShowArgs {
     /// Every test of the part with this serial number, in all lots
     #[arg(long, value_name = "SERIAL", conflicts_with_all = ["lot", "run", "golden"])]
     serial: Option<String>,
-    /// The reference part of that number
+    /// The reference part with this number instead of the production part
     #[arg(long)]
     golden: bool,
     #[command(flatten)]
@@ -101,7 +101,7 @@ fn show_parts(parts: &[Part], args: &ShowArgs, out: &mut Output) -> anyhow::Resu
         })
 }
 
-/// Writes a part as text, for `--format csv` too: CSV has no form for a part with its replies.
+/// Writes a part as text, even with `--format csv`, because CSV cannot hold a part with its replies.
 fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     let Part {
         lot,

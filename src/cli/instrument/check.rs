@@ -31,7 +31,7 @@ pub struct CheckArgs {
     /// Program of the profile to run, with its arguments; may be given several times
     #[arg(long, value_name = "PROGRAM[,ARGUMENT=VALUE]...")]
     run: Vec<String>,
-    /// Print the traffic behind the table
+    /// Print the traffic after the table
     #[arg(long, conflicts_with = "json")]
     traffic: bool,
     /// One JSON object per row
@@ -39,9 +39,9 @@ pub struct CheckArgs {
     json: bool,
 }
 
-/// Queries that show the latency.
+/// Number of queries that measure the latency.
 const QUERIES: usize = 32;
-/// Factor on the usual latency of the profile above which an instrument is slow.
+/// An instrument is slow when its latency exceeds the usual latency of the profile by more than this factor.
 const SLOW: f64 = 3.0;
 
 /// A row of the table.

@@ -89,7 +89,7 @@ async fn repeat(link: &mut Link, args: &MonitorArgs, query: &str) -> anyhow::Res
     }
 }
 
-/// Prints the messages of the last program.
+/// Prints the messages of the queries since the last call; `shown` is the number of the last query printed.
 fn print_traffic(link: &Link, shown: &mut Option<u64>) -> anyhow::Result<()> {
     let traffic = link.log().traffic();
     let new = traffic

@@ -26,7 +26,7 @@ pub struct ScanArgs {
     /// A host to try; may be given several times
     #[arg(long, value_name = "HOST")]
     host: Vec<String>,
-    /// Milliseconds until a reply
+    /// Longest wait for a reply, milliseconds
     #[arg(long, value_name = "MS", default_value_t = 500, value_parser = clap::value_parser!(u64).range(1..=60_000))]
     timeout: u64,
     /// One JSON object per instrument
@@ -34,9 +34,9 @@ pub struct ScanArgs {
     json: bool,
 }
 
-/// Ports of raw sockets.
+/// Usual ports of raw sockets of instruments.
 const RAW_PORTS: [u16; 2] = [5025, 5555];
-/// Port of GPIB adapters.
+/// Usual port of GPIB adapters.
 const ADAPTER_PORT: u16 = 1234;
 /// Greatest GPIB address.
 const LAST_ADDRESS: u8 = 30;
@@ -83,7 +83,7 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
     for link in links {
         bar.set_message(link.to_string());
         bar.inc(1);
-        // An adapter that refuses one address refuses all.
+        // An adapter that refuses a connection for one address refuses it for all.
         if unreachable.as_ref() == Some(&link.transport) {
             continue;
         }
@@ -99,7 +99,7 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
                 });
             }
             Err(failure) => {
-                // A port of a host is a guess, a link is not.
+                // The user named a link, but a port of a host is only a guess.
                 match args.link.contains(&link) {
                     true => tracing::warn!("{link}: {}", sentence(&failure)),
                     false => tracing::debug!("{link}: {}", sentence(&failure)),
@@ -149,7 +149,7 @@ async fn identify(address: &LinkAddress, timeout: u64) -> Result<(Identity, Hist
     Ok((Identity::read(&line), latencies))
 }
 
-/// Returns the profiles of the folder; a wrong one brings a warning.
+/// Returns the profiles of the folder; warns of each faulty one.
 fn profiles(folder: &Folder) -> Vec<Profile> {
     let warn = |error: &ConfigError| tracing::warn!("{error}");
     let names = instrument_names(folder).into_iter();

@@ -36,7 +36,7 @@ pub struct SendArgs {
     command: String,
 }
 
-/// Entries of the error queue that are read at most.
+/// Largest number of entries of the error queue that are read.
 const ENTRIES: usize = 32;
 
 pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit> {
@@ -50,7 +50,7 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
     let mut link = args.link.link(profile.as_ref());
     let pace = Pace::real();
     if let Some(remote) = profile.and_then(|it| it.remote) {
-        // A failure shows again with the command itself.
+        // If this fails, the command itself fails too and reports it.
         let _ = link.exchange(&remote, None).await;
     }
     let began = pace.now();
@@ -126,7 +126,7 @@ fn transcript(command: &str, outcome: &Result<Option<Raw>, Failure>, taken_ms: f
     rows
 }
 
-/// Bytes of a block that are shown.
+/// Number of bytes of a block that are shown.
 const SHOWN: usize = 32;
 
 fn shown(raw: &Raw) -> String {

@@ -8,8 +8,9 @@ use units::Unit;
 /// Coverage factor of printed uncertainties: about 95 %.
 pub const K: f64 = 2.0;
 
-/// Coverage factor of a comparison. All fifteen factors must agree: with 2, about every second unchanged rig would fail
-/// (1 - 0.95^15); with 3, at most one in 25 (1 - 0.9973^15), fewer because both measurements share error terms.
+/// Coverage factor of a comparison. All fifteen factors must agree: with k = 2, about every second unchanged rig would
+/// fail (1 - 0.95^15); with k = 3, at most one in 25 (1 - 0.9973^15), and fewer because both measurements share error
+/// terms.
 pub const K_JOINT: f64 = 3.0;
 
 /// A factor measured again, beside the stored one.

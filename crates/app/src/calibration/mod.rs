@@ -1,8 +1,8 @@
 //! Determines the calibration factors of a rig from its references and reference parts, or verifies them.
 //!
-//! Calibration and verification measure the reference parts as a run does before its lot, but no part of a lot
-//! afterwards. A calibration stores the factors found. A verification stores no factors: each factor found must lie
-//! within the combined expanded uncertainty of the stored one (k = 3, because fifteen must agree at once), and the
+//! Calibration and verification measure the reference parts as a run does before its lot, but test no part of a lot
+//! afterwards. A calibration stores the factors found. A verification stores no factors: each factor found must agree
+//! with the stored one within the combined expanded uncertainty (k = 3, because all fifteen must agree), and the
 //! history marks the stored calibration with the outcome. A rig whose calibration is overdue or failed its verification
 //! runs no lot until it is calibrated again.
 
@@ -38,7 +38,7 @@ pub enum Calibrated {
         /// Instant at which the stored factors expire, microseconds since 1970 UTC.
         due_at_us: i64,
     },
-    /// The run ended without factors.
+    /// The run ended before it had determined the factors.
     Ended(Exit),
 }
 
@@ -94,7 +94,7 @@ pub fn calibrate(
     }
 }
 
-/// Returns the nominal coil voltage of the recipe; fails without a reference part of that voltage.
+/// Returns the nominal coil voltage of the recipe, V; fails when no reference part has this voltage.
 fn reference_voltage(config: &Folder, recipe: &str) -> anyhow::Result<f64> {
     let plant = Plant::load(config)?;
     let Some(nominal_v) = load_recipe(config, recipe)?.device.part().nominal_v else {

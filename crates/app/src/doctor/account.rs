@@ -9,7 +9,7 @@ use std::path::Path;
 /// An account of the operating system.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Account {
-    /// Name; its number when it has no name.
+    /// Name of the account; its user id when it has no name.
     pub name: String,
     uid: u32,
     groups: Vec<u32>,
@@ -22,8 +22,8 @@ pub fn own_account() -> String {
 }
 
 impl Account {
-    /// Returns the account that runs the rig whose history lies in `folder`: this one when it may write there and is not
-    /// root, else the owner of the folder.
+    /// Returns the account that runs the rig whose history lies in `folder`: the account of this process when it may
+    /// write there and is not root, otherwise the owner of the folder.
     pub fn of_rig(folder: &Path) -> Self {
         let own = Self::new(Uid::effective());
         match std::fs::metadata(folder) {
@@ -73,7 +73,7 @@ pub(super) fn rights(file: &Metadata) -> String {
     format!("{user}:{} {:04o}", group(file), file.mode() & 0o7777)
 }
 
-/// Returns the name of the group of a file; its number when it has no name.
+/// Returns the name of the group of a file; its group id when it has no name.
 pub(super) fn group(file: &Metadata) -> String {
     let group = Group::from_gid(Gid::from_raw(file.gid())).ok().flatten();
     group.map_or_else(|| file.gid().to_string(), |group| group.name)

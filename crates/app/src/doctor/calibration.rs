@@ -1,4 +1,4 @@
-//! Checks the calibrations: a rig takes no lot with factors that ran out or failed their verification.
+//! Checks the calibrations: a rig accepts no lot while its factors are overdue or failed their verification.
 
 use super::finding::{Check, Finding, Subject};
 use crate::calibration::{REMEDY, date};

@@ -27,9 +27,9 @@ pub enum Check {
     Clock,
     /// Calibration for one coil voltage.
     Calibration,
-    /// Right to run the cycle before other programs.
+    /// Right of the cycle's thread to a real-time priority.
     RealTime,
-    /// Right to keep the program in memory.
+    /// Right to lock the program's memory, so that it is never paged out.
     LockedMemory,
     /// Cause of late waits; only `host check` looks for it.
     Lateness,

@@ -1,4 +1,4 @@
-//! Checks the computer: clock, and the rights to run before other programs and to stay in memory.
+//! Checks the computer: the clock, and the rights to a real-time priority and to locked memory.
 
 use super::finding::{Check, Finding, Subject};
 use crate::real_time::PRIORITY;
@@ -22,7 +22,7 @@ pub(super) fn check_clock() -> Finding {
     }
 }
 
-/// Returns what the command prints; `None` when it is missing or fails.
+/// Returns what a command prints on stdout; `None` when the command is missing or fails.
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
@@ -36,11 +36,12 @@ struct Privileges {
     of: &'static str,
     /// Highest real-time priority, 0 for none.
     priority: u64,
-    /// Most memory that may be locked, bytes; the program locks none below a limit.
+    /// Most memory that the program may lock, bytes; the program locks no memory unless this is `u64::MAX`, no limit.
     locked: u64,
 }
 
-/// Checks the rights of the running service, of the installed one, or of this process where none is installed.
+/// Checks the rights of the running service, or of the installed service while it is stopped, or of this process when
+/// none is installed.
 pub(super) fn check_privileges() -> Vec<Finding> {
     match of_service().or_else(|| of_process("this process", "self")) {
         Some(privileges) => privileges.findings().into(),
@@ -67,7 +68,8 @@ impl Privileges {
         ]
     }
 
-    /// Returns rights from limits and whether a capability, or being root, lifts each of them.
+    /// Makes the rights from the limits of priority and locked memory; `lifted` is true where a capability, or being
+    /// root, lifts that limit.
     fn new(of: &'static str, limits: [Option<u64>; 2], lifted: [bool; 2]) -> Self {
         let [priority, locked] = limits.map(Option::unwrap_or_default);
         Self {

@@ -1,8 +1,8 @@
 //! Finds what is wrong with an installation, and says what to do.
 //!
 //! The doctor reads files, rights and the state of the computer. It opens no port and writes no file, so it may run
-//! while the rig works. It judges the rights of the account that runs the rig, which owns the data, not those of its
-//! caller.
+//! while the rig works. It judges the rights of the account that runs the rig, which owns the data, not the rights of
+//! the person who calls the doctor.
 
 pub(crate) mod account;
 mod calibration;
@@ -28,7 +28,7 @@ pub struct Installation<'a> {
     pub files: &'a Files,
     /// Ports that replace those of `rig.toml`; `None` for a simulated rig, which has no ports.
     pub lines: Option<&'a [LinePort]>,
-    /// Folder of the backups; `None`: not checked. Without a history no backup is expected.
+    /// Folder of the backups; `None`: the backups are not checked. Without a history no backup is expected.
     pub backups: Option<&'a Path>,
 }
 

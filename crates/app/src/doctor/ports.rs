@@ -77,7 +77,7 @@ fn check_port(wired: &Wired, twin: Option<&Wired>, account: &Account) -> Finding
     }
 }
 
-/// Returns how the account gets the right to open the device.
+/// Returns the remedy by which the account gets the right to open the device.
 fn open_up(device: &Metadata, account: &Account) -> String {
     match group(device).as_str() {
         "root" => "look for another program's udev rule".to_owned(),

@@ -12,9 +12,9 @@ use std::io::ErrorKind;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-/// Least free space, bytes.
+/// Free space below which the disk gets a warning, bytes.
 const ROOM: u64 = 1_000_000_000;
-/// Free space below which the history may soon fail to grow, bytes.
+/// Free space below which the disk gets a fault, bytes: the history may soon fail to grow.
 const NO_ROOM: u64 = 100_000_000;
 /// Greatest age of the newest backup, hours: one of the daily backups may fail.
 const BACKUP_H: i64 = 50;

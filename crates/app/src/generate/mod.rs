@@ -1,7 +1,7 @@
 //! Generates a history as large as weeks of production would make it, for trying queries and reports.
 //!
 //! The values are distributed as in a lot of the default simulated world (means, scatter, 4 % defects), and the recipe
-//! judges them by the rules of a run. The parts come in lots of [`LOT`], one every [`CYCLE_US`], and end at
+//! judges them by the rules of a run. The parts come in lots of [`LOT`], one part every [`CYCLE_US`], and end at
 //! [`GenerateOptions::until`]. Five per cent of the values have a second attempt. Only rejects carry raw replies: a rig
 //! keeps about thirty replies per part, which would make the file three times as large and would slow no query. The
 //! history marks the runs as simulated. The same seed gives the same values.

@@ -1,11 +1,11 @@
-//! Advice: the causes of late waits that a computer shows, each with what to change.
+//! Advice: causes of late waits that this computer shows, each with the change that removes it.
 
 use super::facts::{Facts, Preemption};
 use super::verdict::{EMERGENCY_STOP, Verdict};
 use crate::doctor::finding::{Check, Finding, Subject};
 use crate::real_time::PRIORITY;
 
-/// Returns the warning that `subject` makes the rig late.
+/// Returns the warning that `subject` delays the rig.
 fn late(
     subject: &str,
     found: impl ToString,
@@ -128,7 +128,8 @@ fn unexplained(facts: &Facts, verdict: &Verdict) -> Option<Finding> {
     (!verdict.is_kept).then(|| late("kernel and firmware", found, "no late wait", remedy))
 }
 
-/// Advises on the emergency stop, once the program has its real-time rights.
+/// Advises to accept a slower emergency stop when late waits exceed its margin although the thread has real-time
+/// priority.
 fn demand(facts: &Facts, verdict: &Verdict) -> Option<Finding> {
     let need = verdict.needs.iter().find(|it| it.key == EMERGENCY_STOP)?;
     if need.is_kept || !facts.is_fifo {

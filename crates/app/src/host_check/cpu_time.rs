@@ -12,8 +12,8 @@ pub struct CpuTime {
     pub stolen_ms: f64,
 }
 
-/// Fields of the line `cpu` that add up to all time: user, nice, system, idle, iowait, irq, softirq, steal. The fields
-/// behind them count time of guests, which `user` contains.
+/// Number of fields of the line `cpu` that add up to all time: user, nice, system, idle, iowait, irq, softirq, steal.
+/// The fields after them count time of guests, which `user` contains.
 const FIELDS: usize = 8;
 
 impl CpuTime {

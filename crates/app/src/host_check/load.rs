@@ -12,15 +12,15 @@ use std::thread::{Builder, JoinHandle};
 
 /// Busy threads per CPU.
 const BUSY_PER_CPU: usize = 2;
-/// Bytes between two syncs, as a commit of the history writes them.
+/// Bytes between two syncs: the size of a commit of the history.
 const BLOCK: usize = 64 * 1024;
-/// Steps of a busy thread between two looks at the flag.
+/// Steps that a busy thread takes between two checks of the stop flag.
 const STEPS: u32 = 10_000;
 
 /// Creates a file without a name in `folder`: the system removes it however the program ends.
 ///
 /// # Errors
-/// Fails when the folder does not exist or takes no file; names it.
+/// Fails when the folder does not exist or refuses a new file; the error names the folder.
 pub(super) fn scratch_file(folder: &Path) -> anyhow::Result<File> {
     let place = || {
         format!(

@@ -1,5 +1,5 @@
-//! Tests whether this computer keeps the rig's time: a latency test as cyclictest makes it, on the thread and the timer
-//! of the rig, first with the computer as it is, then under load.
+//! Tests whether this computer keeps the timing of the rig: a latency test like cyclictest's, on the thread and the
+//! timer of the rig, first with the computer as it is, then under load.
 //!
 //! | module | holds |
 //! |---|---|
@@ -51,7 +51,7 @@ pub struct Report {
 }
 
 /// Tests this computer for `span`, half of it per phase, against the needs of `wiring`. The load writes an unnamed file
-/// in `folder`. Calls `ended` after each phase. Returns `None` after Ctrl-C. Opens no port.
+/// in `folder`. Calls `ended` after each phase. Opens no port. Returns `None` after Ctrl-C.
 ///
 /// # Errors
 /// Fails when `folder` takes no file, when the system refuses a thread, or as `ended` does.
@@ -84,7 +84,7 @@ pub fn run(
     })
 }
 
-/// Measures one phase, under load when there is a file for it.
+/// Measures one phase; with a `file`, under a load that writes this file.
 async fn test(
     phase: Phase,
     span: Span,

@@ -10,7 +10,7 @@ const RIGHT: f64 = 30.0;
 const TOP: f64 = 92.0;
 const HEIGHT: f64 = 260.0;
 const BELOW: f64 = 46.0;
-/// Height of a single wait, decades.
+/// Height of a bar that stands for a single wait, decades: on the logarithmic scale it would have none.
 const ONE: f64 = 0.25;
 const LIMIT: &str = "#a11212";
 
@@ -21,7 +21,7 @@ const fn colour(phase: Phase) -> &'static str {
     }
 }
 
-/// Axes of the picture: classes to the right, decades of waits upwards.
+/// Axes of the picture: classes of lateness to the right, number of waits upwards in decades.
 struct Axes {
     classes: usize,
     decades: f64,
@@ -53,7 +53,8 @@ impl Axes {
     }
 }
 
-/// Returns the place of a lateness among classes whose edges double, in classes from the left.
+/// Returns the position of a lateness on the x axis, in classes from the left; `edges` are classes whose upper edges
+/// double.
 fn place(edges: &[Bucket], ms: f64) -> f64 {
     let first = edges.first().map_or(1.0, |it| it.up_to_ms);
     match ms < first {

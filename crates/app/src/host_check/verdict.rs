@@ -1,36 +1,36 @@
-//! Compares the lateness of a computer with the greatest lateness at which the promises of `rig.toml` hold.
+//! Compares the lateness of a computer with the greatest lateness at which the rig still keeps the times of `rig.toml`.
 
 use machine::rig::wiring::Wiring;
 use serde::Serialize;
 
-/// Key of the need that the reaction to the emergency stop is short enough.
+/// Key of the need for a short enough reaction to the emergency stop.
 pub(super) const EMERGENCY_STOP: &str = "emergency_stop";
 
-/// A promise that a late computer breaks.
+/// A requirement of `rig.toml` that a late computer may break.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Need {
     /// `missing_reply` or `emergency_stop`.
     pub key: &'static str,
-    /// Greatest lateness that keeps it, ms.
+    /// Greatest lateness at which the need is met, ms.
     pub tolerated_ms: f64,
-    /// True when the worst lateness keeps it.
+    /// True when the need is met at the worst lateness.
     pub is_kept: bool,
-    /// Keys of `rig.toml` from which the greatest lateness follows, with their values.
+    /// Keys of `rig.toml`, with their values, from which `tolerated_ms` follows.
     pub origin: String,
 }
 
 /// Whether a computer keeps the time of a rig.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
-    /// True when the worst lateness keeps every need.
+    /// True when every need is met at the worst lateness.
     pub is_kept: bool,
     /// Worst lateness of the test, ms.
     pub worst_ms: f64,
     /// Least of the tolerated latenesses, ms.
     pub tolerated_ms: f64,
-    /// Least `safety.estop_reaction_ms` that keeps the emergency stop at this lateness, ms.
+    /// Least `safety.estop_reaction_ms` with which the need of the emergency stop is met at the worst lateness, ms.
     pub reaction_with_lateness_ms: f64,
-    /// Each promise with the lateness that it tolerates.
+    /// Each need with the lateness that it tolerates.
     pub needs: [Need; 2],
 }
 

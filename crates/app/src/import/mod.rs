@@ -1,5 +1,5 @@
-//! Imports a file of an older system, CSV or spreadsheet by its extension. A file is imported whole or not at all, and
-//! only once into the same lot.
+//! Imports a file of an older system, CSV or spreadsheet depending on its extension. A file is imported whole or not at
+//! all, and only once into the same lot.
 
 mod sheet;
 #[cfg(test)]

@@ -14,9 +14,9 @@ pub const FOUND_LOT: &str = "found in the rig";
 /// Purpose of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// To calibrate if that is due, to measure reference parts, then to test the parts of the lot.
+    /// To calibrate if no calibration is valid, to measure reference parts, then to test the parts of the lot.
     Lot,
-    /// To control the machine between lots: it rests in this state, and discharges parts found inside as lot
+    /// To control the machine between lots: the machine begins in this state, and discharges parts found inside as lot
     /// [`FOUND_LOT`].
     BetweenLots(State),
     /// To measure the references and the reference parts only, even if a calibration is valid; the run itself stores no
@@ -25,7 +25,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// Returns the state in which the machine rests; `None` while a lot is under way.
+    /// Returns the state in which the machine begins between lots; `None` for every other purpose.
     pub const fn rest_state(self) -> Option<State> {
         match self {
             Self::BetweenLots(state) => Some(state),
@@ -33,7 +33,7 @@ impl Purpose {
         }
     }
 
-    /// Returns true while no lot is under way.
+    /// Returns true for a run between lots.
     pub const fn is_between_lots(self) -> bool {
         self.rest_state().is_some()
     }

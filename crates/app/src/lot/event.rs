@@ -16,8 +16,8 @@ pub enum LotEvent {
     Begun,
     /// An event of the control cycle.
     Cycle(Event),
-    /// The record of a judged part is complete: the part has landed in a bin, or the run is over and it never will
-    /// (`None`).
+    /// The record of a judged part is complete: the part has landed in a bin, or the run is over and the part will
+    /// never land (`None`).
     PartDone(Box<PartUnderWay>, Option<Landed>),
     /// These files hold the traffic of every line before an alarm.
     TracesKept(Vec<PathBuf>),

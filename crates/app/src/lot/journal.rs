@@ -21,7 +21,7 @@ const HOLD_ALARMS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode:
 /// Alarm of a run whose references or reference parts give no calibration; it counts as a failed reference check.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
-/// State of the run as the rows so far give it; the next rows depend on it.
+/// State of the run according to the rows so far; the next rows depend on it.
 #[derive(Debug)]
 pub struct Journal {
     /// Name of the lot; `None` between lots.
@@ -93,8 +93,8 @@ impl Journal {
         rows
     }
 
-    /// Returns the rows of a changed alarm list: for alarms whose cause is gone, and for a lot that is no longer on
-    /// hold.
+    /// Returns the rows that follow from a changed alarm list: one for each alarm whose cause is gone, and one for a
+    /// lot that is no longer on hold.
     pub fn standing(&mut self, standing: &[ListedAlarm], at_us: i64) -> Vec<Row> {
         let active = standing.iter().filter(|one| one.is_active());
         let active: Vec<Alarm> = active.map(|one| one.alarm.clone()).collect();
@@ -161,7 +161,7 @@ impl Journal {
         self.lot.as_ref().map(row)
     }
 
-    /// Returns rows with the increase of each use count since the last call.
+    /// Returns one row for each use count that has grown since the last call, with its increase.
     pub fn uses(&mut self, uses: Uses) -> Vec<Row> {
         let before = std::mem::replace(&mut self.uses, uses);
         let each = uses.each().into_iter().zip(before.each());

@@ -6,8 +6,8 @@
 //! | `screen` | shows the run on the page |
 //! | the caller's | shows a progress bar, prints rows on stdout, plays a script, or keeps a calibration |
 //!
-//! The cycle sends events; `progress` takes each into account first, then every subscriber receives it with the
-//! progress.
+//! The cycle sends events; `progress` takes each event into account first, then every subscriber receives the event
+//! together with the progress.
 
 mod assemble;
 mod context;
@@ -127,7 +127,8 @@ impl LotRunner<'_> {
             stream.give_up(error);
         }
         let ended = running.await;
-        // The cycle has dropped its end, so that the last snapshot comes before the end of the run.
+        // The cycle has dropped its sender, so this ends; the last snapshot is then on the page before the end of the
+        // run.
         showing.await?;
         if let Some(limiter) = limiter {
             limiter.abort();
@@ -156,7 +157,7 @@ impl LotRunner<'_> {
     }
 }
 
-/// Returns the exit of a program that has lost its history, because it cannot write it.
+/// Returns the exit of a program that cannot write its history any more.
 pub(crate) fn lost(error: &anyhow::Error) -> Exit {
     tracing::error!("history: {error:#}");
     Exit::Trouble(Cause::history_lost(&format!("{error:#}")))
@@ -189,8 +190,8 @@ impl Stream<'_, '_> {
         self.recorder.receive(event, &self.lot)
     }
 
-    /// Keeps the events of the cycle in the history until the cycle ends; sets `recorded` to the last part on the disk.
-    /// [`Stream::close`] writes the rows that an outage leaves pending.
+    /// Writes the events of the cycle to the history until the cycle ends; sets `recorded` to the ordinal of the last
+    /// part on the disk. [`Stream::close`] writes the rows that an outage leaves pending.
     ///
     /// # Errors
     /// Fails when an event cannot be made into rows.

@@ -10,20 +10,20 @@ use std::path::Path;
 use std::time::Instant;
 use units::{RigTime, Span};
 
-/// Time between two tries to write the history.
+/// Time between two attempts to write the history.
 const RETRY: Span = Span::ms(1000);
 
 /// An outage of the history.
 #[derive(Debug)]
 pub(super) struct Outage {
     began: RigTime,
-    /// Start by the wall clock: virtual time does not pass while a try waits for a lock.
+    /// Start by the wall clock, because virtual time stands still while an attempt waits for a lock.
     began_wall: Instant,
     retry_at: RigTime,
 }
 
 impl Outage {
-    /// Notes a failed try at `now`; the first one begins the outage.
+    /// Notes a failed attempt at `now`; the first one begins the outage.
     pub fn note(outage: &mut Option<Self>, now: RigTime) -> &Self {
         let outage = outage.get_or_insert_with(|| Self {
             began: now,
@@ -35,7 +35,7 @@ impl Outage {
         outage
     }
 
-    /// Returns the time of the next try.
+    /// Returns the time of the next attempt.
     pub fn retry_at(&self) -> RigTime {
         self.retry_at
     }
@@ -61,10 +61,11 @@ pub(crate) struct HistoryRetry<'a> {
 }
 
 impl HistoryRetry<'_> {
-    /// Repeats `write` while the history fails it, and shows the alarm at the page meanwhile.
+    /// Repeats `write` until the history can be written, and shows the alarm on the page meanwhile.
     ///
     /// # Errors
-    /// Fails with any other error at once, and with that of the history after a stop or when the outage was too long.
+    /// Fails at once with an error that is not one of the history. Fails with the error of the history after a stop,
+    /// and when the outage is too long.
     pub async fn until_written<T>(
         &self,
         mut write: impl AsyncFnMut() -> anyhow::Result<T>,

@@ -25,7 +25,7 @@ pub(super) struct PriorState {
 }
 
 impl PriorState {
-    /// Reads the state from `store`; a live rig brings its own calibration, a new simulated rig has none.
+    /// Reads the state from `store`. A simulated rig has its calibration with it instead; a new one has none.
     pub fn read(store: &Store, context: &LotContext) -> anyhow::Result<Self> {
         let simulated = context.is_simulated();
         let calibration = match context.purpose {
@@ -53,7 +53,7 @@ impl PriorState {
     }
 }
 
-/// Returns the serial numbers of the run's parts. In a retest the parts come again with the numbers that they have.
+/// Returns the serial numbers of the run's parts. In a retest the parts return with the numbers that they already have.
 fn serials(store: &Store, context: &LotContext) -> anyhow::Result<Serials> {
     let (order, plant) = (context.order, context.plant);
     let settings = plant.lot.serial.as_ref();

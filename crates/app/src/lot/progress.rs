@@ -28,12 +28,12 @@ pub struct PartUnderWay {
     /// Time from the moment the previous part left the nest to the moment this one left it, seconds of rig time; `None`
     /// before it leaves, and for the first part.
     pub cycle_s: Option<f64>,
-    /// Number of reference parts judged so far; this part counts if it is one.
+    /// Number of reference parts judged so far, this part included if it is one.
     pub reference_count: u64,
 }
 
 impl PartUnderWay {
-    /// Returns the number of the part among those of its kind, and the name of the kind.
+    /// Returns the number of the part among those of its kind, and the name of the kind (`lot` or `golden`).
     pub fn number(&self) -> (u64, &'static str) {
         rows::number(&self.judged.part.role, self.reference_count)
     }
@@ -79,7 +79,7 @@ impl<'a> LotProgress<'a> {
         }
     }
 
-    /// Returns the part with this ordinal while it is under way, from verdict to landing.
+    /// Returns the part with this ordinal (its number among all parts of the run) from its verdict until it lands.
     pub fn part(&self, ordinal: u64) -> Option<&PartUnderWay> {
         self.under_way.get(&ordinal)
     }
@@ -90,7 +90,7 @@ impl<'a> LotProgress<'a> {
         self.counts.per_hour(now.since(began).as_seconds())
     }
 
-    /// Returns when the last part landed; before the first landing, when the lot began; before that, rig time zero.
+    /// Returns when the last part landed; before the first landing, when the lot began; before the lot, rig time zero.
     pub fn end(&self) -> RigTime {
         self.last_landed.or(self.lot_began).unwrap_or_default()
     }
@@ -184,7 +184,8 @@ impl<'a> LotProgress<'a> {
         parts.map(|part| LotEvent::PartDone(Box::new(part), None))
     }
 
-    /// Returns how the run ended: complete, stopped, or trouble with the alarm (else the order) that caused it.
+    /// Returns how the run ended: complete, stopped, or in trouble; the cause of trouble is an alarm, or `aborted`
+    /// without one.
     pub fn exit(&self, ending: &Ending) -> Exit {
         match ending {
             Ending::Complete => Exit::Done,

@@ -1,9 +1,10 @@
 //! Writes the events of a run to the history.
 //!
-//! Between lots the history has no run until a part found inside needs a row: the lot
-//! [`FOUND_LOT`](super::FOUND_LOT) then gets one. One transaction takes all pending rows; the recorder then publishes
-//! the ordinal of the last judged part, which allows the sorter to open its gripper. After a failed transaction its
-//! rows stay pending, in order. The database works on a blocking thread, one short task per transaction.
+//! Between lots the history has no run until a part found inside needs a row; then the run of lot
+//! [`FOUND_LOT`](super::FOUND_LOT) begins. One transaction writes all pending rows; the recorder then publishes the
+//! ordinal (number within the run) of the last judged part, which allows the sorter to open its gripper. After a failed
+//! transaction its rows stay pending, in order. The database works on a blocking thread, one short task per
+//! transaction.
 
 use super::event::LotEvent;
 use super::journal::Journal;
@@ -124,7 +125,7 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // The rows of a landed part come with `PartDone`, that of a broken promise with its alarm.
+            // A landed part gets its rows with `PartDone`, a broken promise with its alarm.
             Event::State(_)
             | Event::Left(_)
             | Event::Landed(_)

@@ -10,7 +10,7 @@ use machine::instrument::trace::Trace;
 use serde_json::{Map, Value, json};
 use units::RigTime;
 
-/// Returns the number of a part among those of its kind, and the name of the kind.
+/// Returns the number of a part among those of its kind, and the name of the kind (`lot` or `golden`).
 pub fn number(role: &PartRole, reference_count: u64) -> (u64, &'static str) {
     match role {
         PartRole::Lot(seq) => (*seq, "lot"),

@@ -66,7 +66,7 @@ impl Subscriber for Screen {
     }
 }
 
-/// Returns true for a part of the lot under way.
+/// Returns true for a production part of a lot; reference parts and parts between lots are not shown.
 fn is_shown(judged: &Judged, between_lots: bool) -> bool {
     !between_lots && matches!(judged.part.role, PartRole::Lot(_))
 }

@@ -46,7 +46,7 @@ pub struct Summary {
     /// True when the simulated rig checks bodies for contact; absent on a real rig.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bodies_watched: Option<bool>,
-    /// Promises of rig and recipe that did not hold.
+    /// Promises of rig and recipe (standard deviations that uncertainty budgets use) that did not hold.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub broken_promises: Vec<BrokenPromise>,
     /// How late this computer woke the cycle; absent in virtual time.
@@ -93,10 +93,10 @@ impl Summary {
     }
 }
 
-/// A promise that did not hold, and since when.
+/// A promise that did not hold, and the number of parts judged before that was noticed.
 #[derive(Debug, Clone, Serialize)]
 pub struct BrokenPromise {
-    /// Number of parts of the lot judged before, with the promised uncertainty.
+    /// Number of parts of the lot that were judged with the promised value.
     pub after_parts: u64,
     /// The promise, its promised and its observed value, and the value that budgets of later parts use.
     #[serde(flatten)]

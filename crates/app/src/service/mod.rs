@@ -1,10 +1,11 @@
-//! Controls a rig for a whole day: page and API in front of the rig, one lot after another.
+//! Controls a rig for a whole day: serves page and API, and runs one lot after another.
 //!
 //! At every moment one *run* (a control cycle, from its start to its end) controls the rig; the command `run` makes one
-//! too. Between lots a run without a lot does: the machine keeps its state until an operator resets it, the page shows
-//! inputs and alarms, motions by hand are possible, and the rig discharges parts found inside. A lot that is ordered at the page and admitted ([`router`]) ends that
-//! run. The run of the lot then begins as every lot does: it verifies the modules, homes the machine, and calibrates
-//! the rig if necessary. After the lot the rig is between lots again.
+//! too. Between lots, this is a run without a lot: the machine keeps its state until an operator resets it, the page
+//! shows inputs and alarms, motions by hand are possible, and the rig discharges parts found inside. A lot that a
+//! person orders at the page and that is admitted ([`router`]) ends that run. The run of the lot then begins as every
+//! lot does: it verifies the modules, homes the machine, and calibrates the rig if necessary. After the lot the rig is
+//! between lots again.
 //!
 //! | event | the lot | the program |
 //! |---|---|---|
@@ -192,7 +193,7 @@ impl Service {
         }
     }
 
-    /// Runs a lot, or the run between lots, in which the machine `rests`.
+    /// Runs a lot, or the run between lots; `rests` is the state in which the machine begins between lots.
     async fn run_once(
         &self,
         lot: Option<&AdmittedLot>,
@@ -216,7 +217,8 @@ impl Service {
         runner.run(OrderQueue::from(taken), outer).await
     }
 
-    /// Returns the rig as it is now; a simulated one is loaded for the lot, and its calibration is dropped.
+    /// Returns the rig for the next run. Loads a simulated rig for the lot, if there is one; gives it no calibration,
+    /// so that the run calibrates.
     fn current_source(&self, lot: Option<&LotOrder>) -> anyhow::Result<RigSource> {
         match &self.source {
             RigSource::Serial(_) => {}
@@ -240,7 +242,7 @@ impl Service {
     }
 }
 
-/// Builds a simulated rig with an empty magazine that lives from now on; returns a serial source unchanged.
+/// Builds a simulated rig with an empty magazine, which then serves all runs; returns a serial source unchanged.
 fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::Result<RigSource> {
     let _ = (plant, order);
     Ok(match source {
@@ -253,7 +255,7 @@ fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::
     })
 }
 
-/// Returns the order of the run between lots; its recipe, the first one, gives the size of a part found inside.
+/// Returns the order of the run between lots; it names the first recipe, which gives the size of a part found inside.
 fn between(config: &Folder) -> anyhow::Result<LotOrder> {
     let Some(recipe) = recipe_names(config).into_iter().next() else {
         bail!(

@@ -2,8 +2,9 @@
 //!
 //! - `start` with a lot goes to the station once the lot is admitted. The station ends the present run when the machine
 //!   rests; the run of the new lot follows.
-//! - `hold_lot`, `close_lot` of the lot under way go to its station; those of another lot go into the history, as
-//!   `release_lot`, `reopen_lot` and `replaced` do.
+//! - `hold_lot` and `close_lot` for the lot under way go to its station; `release_lot` and `reopen_lot` for it are
+//!   refused.
+//! - These orders for any other lot, and `replaced`, are written into the history.
 //! - Every other order goes straight to the station.
 //!
 //! The router sends refused orders to the station too, marked as denied, because the audit has one writer during a run.
@@ -23,12 +24,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use texts::Message;
 use tokio::sync::{mpsc, oneshot};
 
-/// What follows a run that an order ended: another lot, or a hold.
+/// What follows a run that an order ends: another lot, or a hold.
 #[derive(Debug)]
 pub enum AfterRun {
     /// Another lot.
     Lot(Box<AdmittedLot>),
-    /// The lot is put on hold by this order of this person.
+    /// This order of this person puts the lot on hold.
     Hold(Box<(Order, By)>),
 }
 
@@ -47,7 +48,7 @@ struct RouterState {
     plant: Arc<Plant>,
     source: RigSource,
     run: Mutex<ActiveRun>,
-    /// Held while an order about lots is handled, so that they are handled one after another.
+    /// Lock that a task holds while it handles an order about lots, so that these orders are handled one after another.
     turn: tokio::sync::Mutex<()>,
 }
 
@@ -76,7 +77,7 @@ impl OrderRouter {
         };
     }
 
-    /// Takes out what follows the run that an order ended: a lot or a hold.
+    /// Takes and returns what follows the run that an order ended: a lot or a hold.
     pub fn next(&self) -> Option<AfterRun> {
         self.run().next.take()
     }
@@ -120,8 +121,8 @@ impl OrderRouter {
         }
     }
 
-    /// Notes what follows the run. This happens before the station gets the order, because the station ends the run at
-    /// once. Fails while something noted earlier has not begun.
+    /// Notes what follows the run. The caller does this before it passes the order on, because the station ends the run
+    /// at once. Fails when an earlier note has not been taken yet.
     fn set_next(&self, next: Option<AfterRun>) -> Result<(), Message> {
         let mut run = self.run();
         if run.next.is_some() {
@@ -163,7 +164,7 @@ impl OrderRouter {
         blocking(check).await
     }
 
-    /// Writes into the history an order that no run handles.
+    /// Carries out an order that no run handles, and writes it into the history.
     async fn write(&self, asked: OrderRequest) {
         let (db, simulated) = (self.0.db.clone(), self.0.source.is_simulated());
         let (order, by) = (asked.order.clone(), asked.by.clone());

@@ -1,7 +1,7 @@
 //! Writes the account of a story, line by line.
 //!
-//! Counts whole seconds from the first action of the script or the first alarm; lines about the ordinary course of a lot
-//! carry no time. The first alarm of each code comes with its cause, consequence and action.
+//! Counts whole seconds from the first action of the script or the first alarm; lines about the ordinary course of a
+//! lot carry no time. The first alarm of each code comes with its cause, consequence and action.
 
 use super::play::Refusal;
 use super::script::{Awaited, Script, Step};
@@ -21,7 +21,8 @@ use units::RigTime;
 #[derive(Debug)]
 pub struct Narrator {
     text: String,
-    /// Rig time from which the account counts seconds: that of the first trouble; `None` before it.
+    /// Rig time from which the account counts seconds: the first action of the script or the first alarm; `None` before
+    /// it.
     zero: Option<RigTime>,
     /// Name and verdict of each part, by ordinal.
     parts: BTreeMap<u64, (String, &'static str)>,

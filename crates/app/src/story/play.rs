@@ -21,7 +21,7 @@ use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
 use units::{RigTime, Span};
 
-/// Longest time without an event; after it the story ends.
+/// Longest time without an event; the story ends after it.
 pub const SILENCE_TIMEOUT: Span = Span::ms(180_000);
 /// Result of a story.
 #[derive(Debug)]
@@ -53,7 +53,7 @@ struct Observed {
 }
 
 impl Player {
-    /// Prepares a script; every action of an output is written to `journal`, if given.
+    /// Prepares a script; writes every action of an output to `journal`, if given.
     pub fn new(script: Script, journal: Option<File>) -> Self {
         Self { script, journal }
     }

@@ -53,7 +53,7 @@ pub enum Awaited {
     Lot,
     /// The machine as a whole is in this PackML state.
     State(State),
-    /// An alarm with this code has come.
+    /// An alarm with this code has been raised.
     Alarm(String),
     /// This part of the lot has its verdict.
     Judged(u64),
@@ -159,8 +159,8 @@ fn seconds(text: &str) -> anyhow::Result<Span> {
     }
 }
 
-/// Parses an order, `WORD [MEMBER=VALUE]...`; refuses unknown members, as the page does. A value that is JSON, such as a
-/// number, is read as such; `lot="7"` is the text 7.
+/// Parses an order, `WORD [MEMBER=VALUE]...`; refuses unknown members, as the page does. A value that is valid JSON,
+/// such as a number, is read as JSON, any other value as text; `lot="7"` is the text 7.
 fn order(words: &[&str]) -> anyhow::Result<Order> {
     let (word, members) = words.split_first().context("found no order")?;
     let mut json = serde_json::json!({ "order": word });

@@ -1,6 +1,6 @@
-//! The peer of a busy line (`busy.rs`): a bare client that sends a request, reads up to the CR, waits for the time of
-//! two characters and sends the next request. Its utilisation is lower than the bound because of the simulated modules,
-//! the pseudo-terminal and this machine, which slow any host.
+//! The peer for comparison with a busy line (`busy.rs`): a bare client that sends a request, reads up to the CR, waits
+//! for the time of two characters and sends the next request. Its utilisation is below the bound because simulated
+//! modules, pseudo-terminal and this machine slow any host.
 
 use bus::Wire;
 use std::io::{self, Read, Write};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Longest wait for a reply.
 const TIME_OUT: Duration = Duration::from_secs(2);
 
-/// How late a sleep may end; a wait sleeps that much less and then spins on the clock.
+/// Greatest lateness of a sleep; a wait sleeps that much less and then spins on the clock.
 const LATE: Duration = Duration::from_micros(150);
 
 /// Sends each of `requests` and reads its reply; returns the time from the first request to the last one.

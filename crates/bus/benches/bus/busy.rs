@@ -1,8 +1,8 @@
-//! Utilisation of a line: time that wire and module need, divided by the elapsed time; on a pseudo-terminal with the
-//! paced simulated modules, and with a request always waiting.
+//! Utilisation of a line: the time that wire and modules need, divided by the elapsed time. The line is a
+//! pseudo-terminal with simulated modules in real time, and always has a request waiting.
 //!
-//! After each reply the line pauses for two characters. No host can avoid this pause, and what it costs depends on the
-//! length of the frames. So each workload is shown with the utilisation that the pause alone would allow (`bound`), and
+//! After each reply the line pauses for two characters. No host can avoid this pause, whose cost depends on the length
+//! of the frames. So the table shows each workload with the utilisation that the pause alone would allow (`bound`), and
 //! with that of a bare client on the same pseudo-terminal in the same run (`peer`). No host can exceed the bound, and
 //! on this machine hardly any exceeds the peer.
 
@@ -19,7 +19,7 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// Time that a simulated module takes before its reply begins.
+/// Time that a simulated module takes from the request to the beginning of its reply.
 const LATENCY: Span = Span::ms(2);
 /// Bars: baud rate, and least utilisation at this rate, 0 to 1.
 const BARS: [(u32, f64); 2] = [(9_600, 0.95), (115_200, 0.87)];
@@ -90,7 +90,7 @@ struct Row {
     characters: f64,
     /// Utilisation of the line, 0 to 1.
     share: f64,
-    /// Utilisation if only a pause of two characters came between two transactions, 0 to 1.
+    /// Utilisation that a pause of two characters between transactions would allow without any other delay, 0 to 1.
     bound: f64,
     /// Utilisation of the bare client, 0 to 1.
     peer: f64,
@@ -210,7 +210,7 @@ fn row(
         .map(|pair| pair[1].since(pair[0]).0)
         .collect();
     let elapsed = times[count - 1].since(times[0]).0;
-    // The last answer is left out, because no request follows it.
+    // The last answer does not count, because no request follows it.
     let characters: Vec<usize> = answers[..count - 1].iter().map(characters).collect();
     let needed: u64 = characters
         .iter()

@@ -1,5 +1,6 @@
-//! `cargo bench -p bus`: speed and allocations of the parser, utilisation of a line with the paced simulated modules,
-//! and ten million random frames. `--json` prints utilisation and random frames as figures, a line of JSON each.
+//! `cargo bench -p bus`: speed and allocations of the parser, utilisation of a line with simulated modules in real
+//! time, and ten million random frames. `--json` prints utilisation and random frames as figures, one line of JSON
+//! each.
 
 #![allow(missing_docs)]
 
@@ -19,7 +20,7 @@ use std::time::Instant;
 #[global_allocator]
 static ALLOC: divan::AllocProfiler = divan::AllocProfiler::system();
 
-/// Number of random frames; each is decoded as a reply, and one in eight is read as a request.
+/// Number of random frames; the benchmark decodes each as a reply, and one in eight also as a request.
 const FUZZED: u64 = 10_000_000;
 
 fn main() {
@@ -84,11 +85,11 @@ fn sealed(text: &str) -> Vec<u8> {
 
 // ---- random frames --------------------------------------------------------------------------------------------------
 
-/// What became of the random frames.
+/// Counts of what the parser made of the random frames.
 struct Fuzzed {
     /// Frames accepted as a reply.
     taken: u64,
-    /// Requests read from the frames.
+    /// Commands parsed from the frames as requests.
     read: u64,
     /// Wall time.
     seconds: f64,
@@ -129,7 +130,7 @@ fn fuzz() -> Fuzzed {
         frame.push(b'\r');
         let ask = asks[(turn % asks.len() as u64) as usize];
         taken += u64::from(black_box(ask.decode(&frame, checksum)).is_ok());
-        // Reading a request tries every command, so only one frame in eight is read: the run then ends within minutes.
+        // Parsing a request tries every command; with only one frame in eight the run ends within minutes.
         if turn % 8 == 0 {
             read += black_box(dcon::decode_request(&frame[..frame.len() - 1])).len() as u64;
         }

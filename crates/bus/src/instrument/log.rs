@@ -1,4 +1,4 @@
-//! The last traffic of a link, with the number of its program and the generation.
+//! The last traffic of a link; each message carries the number of its program and its generation.
 
 use super::super::log::Log;
 use super::super::{Direction, arrow, escaped};
@@ -8,7 +8,7 @@ use units::RigTime;
 
 /// Number of messages that the log keeps.
 const MESSAGES: usize = 1000;
-/// Bytes of a message that the log keeps; of a longer one it keeps the beginning and the length.
+/// Greatest number of bytes of a message that the log keeps; of a longer message it keeps the beginning and the length.
 const KEPT: usize = 160;
 
 /// A message, or a piece of one.
@@ -17,7 +17,7 @@ pub struct Traffic {
     /// Number of the program, from 1.
     pub program: u64,
     at: RigTime,
-    /// Number of resynchronisations so far.
+    /// Number of resynchronisations before this message.
     generation: u64,
     direction: Direction,
     /// Beginning of the bytes.
@@ -45,7 +45,8 @@ impl Traffic {
 }
 
 impl fmt::Display for Traffic {
-    /// Writes microseconds, program and generation, `>` sent `<` received `~` discarded, bytes.
+    /// Writes time in microseconds, program and generation, direction (`>` sent, `<` received, `~` discarded), and
+    /// bytes.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (at, way) = (self.at.0, arrow(self.direction));
         let (program, generation) = (self.program, self.generation);

@@ -1,7 +1,7 @@
-//! Links to SCPI instruments: a link does on a stream what its [`Session`] wants next (open, write, ask, drain), each
-//! by a deadline.
+//! Links to SCPI instruments: a link carries out on a stream each next step of its [`Session`] (open, write, ask,
+//! drain), with a deadline for each.
 //!
-//! The crate [`scpi`] proves that a reply is that of its query; a link adds clock, stream and a log of the traffic.
+//! The crate [`scpi`] proves that a reply belongs to its query; a link adds a clock, a stream and a log of the traffic.
 
 mod log;
 
@@ -19,7 +19,7 @@ use tokio::net::TcpStream;
 use tokio_serial::FlowControl;
 use units::{RigTime, Span};
 
-/// How a link opens its stream, at the start and again after doubt.
+/// How a link opens its stream, at the start and again when the session asks for a new connection.
 pub enum Opener {
     /// At an address.
     At(LinkAddress, Flow),
@@ -40,7 +40,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// Creates a closed link; the first program opens it. `seed` should differ from start to start.
+    /// Creates a closed link; the first program opens it. `seed` should differ at each start of the program.
     pub fn new(opener: Opener, settings: LinkSettings, pace: Pace, seed: u64) -> Self {
         Self {
             session: Session::new(settings, seed),
@@ -67,13 +67,15 @@ impl Link {
     /// Runs a program.
     ///
     /// # Errors
-    /// Fails with the first reason why its values are not certain; then the next program resynchronises first. A program
-    /// whose future is dropped counts as a failed one.
+    /// Fails with the first reason why the values are not certain. After a failure that leaves doubt
+    /// ([`Failure::is_doubt`]) the next program begins with a resynchronisation, and so it does after a program whose
+    /// future was dropped.
     pub async fn run(&mut self, program: Program) -> Result<Vec<Reply>, Failure> {
         self.carry_out(program, Session::start).await
     }
 
-    /// Runs a program that makes the instrument safe, also when its set-up fails.
+    /// Runs a program that makes the instrument safe. After doubt it runs without the set-up, because the set-up may be
+    /// what fails.
     ///
     /// # Errors
     /// Fails as [`Link::run`] does.
@@ -104,10 +106,10 @@ impl Link {
     }
 
     /// Opens the stream if needed, writes a message and reads its reply, without proof and without resynchronisation;
-    /// for tools that show what an instrument does by itself. Without `form` there is no reply.
+    /// for tools that show the behaviour of an instrument. Without `form` it expects no reply.
     ///
     /// # Errors
-    /// Fails as [`Link::run`] does; then the next program resynchronises first.
+    /// Fails as [`Link::run`] does; the next program then begins with a resynchronisation.
     pub async fn exchange(
         &mut self,
         command: &str,
@@ -232,11 +234,11 @@ impl Link {
         }
     }
 
-    /// Returns why no reply arrived in time.
+    /// Returns the failure that explains why no reply arrived in time.
     fn silence(&mut self, question: &Question) -> Failure {
         let command = question.command.clone();
         let alone = self.reader.without_tail().and_then(|it| it.text().ok());
-        // Behind a reply that never came, the line of an adapter stands alone.
+        // When the reply never came, the address line of an adapter stands alone.
         let address = alone.filter(|it| it.parse::<u8>().is_ok_and(|it| it <= 30));
         if let (Some(found), Some(expected)) = (address, question.tail.as_deref())
             && found != expected
@@ -255,7 +257,7 @@ impl Link {
         }
     }
 
-    /// Returns true when bytes wait that no query has caused; discards them.
+    /// Returns true when unrequested bytes wait; discards them.
     async fn strays(&mut self) -> Result<bool, Failure> {
         let waiting = self.reader.clear() > 0;
         let now = self.pace.now();
@@ -281,7 +283,7 @@ impl Link {
         }
     }
 
-    /// Writes a message; one that leaves in part ends the connection, so that nothing is added to it.
+    /// Writes a message. A message that leaves only in part ends the connection, so that nothing can follow it.
     async fn write(&mut self, bytes: &[u8], deadline: RigTime) -> Result<(), Failure> {
         self.note(Direction::Sent, bytes);
         let stream = self.stream.as_mut().ok_or_else(closed)?;
@@ -293,7 +295,7 @@ impl Link {
         written.map_err(|error| self.broken(&error))
     }
 
-    /// Reads what has arrived or arrives by `deadline`; `None` when nothing does.
+    /// Reads the bytes that have arrived or arrive by `deadline`; `None` when there are none.
     async fn piece(&mut self, deadline: RigTime) -> Result<Option<Piece>, Failure> {
         let mut piece = Piece {
             bytes: [0; 2048],
@@ -386,7 +388,8 @@ async fn open(transport: &Transport, flow: Flow) -> Result<Box<dyn Port>, Failur
             let named = |error: io::Error| disconnected(format!("{host}:{port}: {}", error.kind()));
             let host = host.trim_start_matches('[').trim_end_matches(']');
             let stream = TcpStream::connect((host, *port)).await.map_err(named)?;
-            // A query is one small message; without this it may wait for the acknowledgement of the one before.
+            // A query is one small message; with Nagle's algorithm it might wait for the acknowledgement of the
+            // previous one.
             stream.set_nodelay(true).map_err(named)?;
             Ok(Box::new(stream))
         }

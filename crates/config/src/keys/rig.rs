@@ -13,7 +13,8 @@ use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, HISTORY, LINE, MODULE, RECIPES, SAFETY, SERIAL_READER};
 use points::{ACTUATOR, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE};
 
-/// Returns the form of points that only kinds of device need: no point is required, and `may` returns the known names.
+/// Returns the form of points that only some kinds of device use: none is required, and `may` returns the allowed
+/// names.
 const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
     Form::Points(Points {
         must: &[],

@@ -11,7 +11,8 @@ use std::fmt;
 const TRIPPED: u8 = 0x04;
 
 impl Command {
-    /// Describes a reply to this command. With `model`, it separates the inputs of a digital module from its outputs.
+    /// Describes a reply to this command. With `model`, the description of a digital module separates inputs from
+    /// outputs.
     pub fn describe_reply(&self, reply: &Reply, model: Option<Model>) -> Description {
         let one = Description::new;
         match *reply {
@@ -117,7 +118,8 @@ impl Command {
 }
 
 impl Config {
-    /// Describes a configuration with its address, by code `checked` when it switches checksums on, else by `plain`.
+    /// Describes a configuration with its address: with code `checked` if the configuration switches checksums on,
+    /// otherwise with code `plain`.
     pub(super) fn describe(
         self,
         plain: &'static str,
@@ -189,7 +191,7 @@ fn reading(reading: &Reading) -> Description {
     }
 }
 
-/// Describes all readings in one argument, by a code of its own when some are marks instead of numbers.
+/// Describes all readings in one argument; uses another code when some of them are marks instead of numbers.
 fn readings(all: &Readings) -> Description {
     let numbered = all.iter().enumerate();
     let list: Vec<String> = numbered.map(|(n, it)| format!("{n}={it}")).collect();

@@ -88,7 +88,7 @@ fn analog_in(ask: AnalogIn) -> Description {
 }
 
 fn analog_out(ask: AnalogOut) -> Description {
-    // A request to a module with one output names no channel; its description names output 0.
+    // A request to a module with one output has no channel number; its description uses output 0.
     let of = |code, channel: Option<_>| {
         let number = channel.map_or(0, UpTo::get);
         Description::new(code).with("output", number)

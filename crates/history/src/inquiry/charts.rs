@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 /// Allowed number of parts in a subgroup; 1 gives charts of individual values.
 pub const SUBGROUPS: std::ops::RangeInclusive<u8> = 1..=10;
 
-/// A control chart, and what it is about.
+/// A control chart of one parameter or bin.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Charted {
     /// Parameter key or name of a bin.

@@ -1,4 +1,4 @@
-//! Checks the members of a filter, so that a mistyped one is refused by name instead of giving an empty result.
+//! Checks the members of a filter: a misspelt value gives an error that names the member instead of an empty result.
 
 use super::{InquiryError, Result};
 use crate::{Archive, Filter};

@@ -39,7 +39,8 @@ pub struct Comparison {
     pub lots: Vec<ComparedLot>,
     /// Test whether the means are equal; `None` where a lot has no spread or fewer than two values.
     pub means: Option<Equality>,
-    /// Test whether the spreads are equal; `None` where a lot has fewer than two values, or no spread varies.
+    /// Test whether the spreads are equal; `None` where a lot has fewer than two values, or when all
+    /// values of each lot lie equally far from its median.
     pub spreads: Option<Equality>,
     /// Lower edge of the first class; `None` when all values are equal.
     pub from: Option<f64>,

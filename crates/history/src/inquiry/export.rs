@@ -1,5 +1,6 @@
 //! Exports the selected parts as CSV or spreadsheet; the memory needed does not grow with their number. A spreadsheet
-//! names the filter, so that a reader knows which parts its figures are about; that of a lot has the answers to prompts.
+//! names the filter, so that its reader knows which parts the figures cover; the spreadsheet of one lot also lists the
+//! answers to prompts.
 
 use super::Result;
 use super::figures::agreed;
@@ -50,8 +51,8 @@ pub fn spreadsheet(
     Ok(sheet.finish(&about)?)
 }
 
-/// Returns the recipes of the runs, the members of the filter, and the answers to the prompts of its lot, named in the
-/// language of the paper.
+/// Returns facts for the summary, named in the language of the paper: the recipes of the runs, the members of the
+/// filter, and the answers to prompts of the filter's lot.
 fn facts(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<Vec<(String, String)>> {
     let language = paper.language;
     let mut recipes: Vec<String> = archive

@@ -19,7 +19,7 @@ pub struct Figures {
     pub limits_differ: bool,
 }
 
-/// Computes the statistics of `param`; uses the limits of its runs unless the caller gives others.
+/// Computes the statistics of `param`; uses the stored limits of the selected runs unless the caller gives others.
 pub fn figures(
     archive: &Archive,
     param: &str,
@@ -40,8 +40,8 @@ pub fn figures(
     })
 }
 
-/// Counts the selected parts that have none of the `n` values; `None` unless the filter selects whole parts of one lot
-/// or recipe, because other recipes may measure other parameters.
+/// Counts the selected parts without a value, when `n` parts have one. Returns `None` when the filter names neither lot
+/// nor recipe, because other recipes may measure other parameters, and when it has `min`, `max`, `limit` or `offset`.
 pub(super) fn without_value(archive: &Archive, filter: &Filter, n: u64) -> Result<Option<u64>> {
     let by_value = filter.min.is_some() || filter.max.is_some();
     let paged = filter.limit.is_some() || filter.offset.is_some();

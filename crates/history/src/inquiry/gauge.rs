@@ -1,4 +1,4 @@
-//! Reads the readings of a gauge study from CSV.
+//! Reads the measurements of a gauge study from CSV.
 
 use crate::csv::{self, CsvError};
 use quality::Reading;

@@ -149,8 +149,8 @@ fn reference_part(archive: &Archive, part: &Certificate) -> Result<ReferencePart
     })
 }
 
-/// Returns value and expanded uncertainty; `None` for a value without uncertainty, which only serves to compute a
-/// calibration.
+/// Returns value and expanded uncertainty of a parameter; `None` for a value without uncertainty, which only serves to
+/// compute a calibration.
 fn read(part: &Part, parameter: Characteristic) -> Option<(f64, f64)> {
     let number =
         |map: &serde_json::Map<String, serde_json::Value>| map.get(parameter.key())?.as_f64();

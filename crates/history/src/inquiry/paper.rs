@@ -13,7 +13,8 @@ use jiff::{Timestamp, tz::TimeZone};
 /// Largest number of rejects that a lot report lists.
 const LISTED: usize = 200;
 
-/// Returns the settings of a page about the selected runs, marked SIMULATION when one of them was on the simulated rig.
+/// Returns the settings of a page about the selected runs; the page is marked SIMULATION when one of the runs was on
+/// the simulated rig.
 pub fn paper_of(archive: &Archive, filter: &Filter, language: Lang) -> Result<Paper> {
     Ok(Paper {
         simulated: archive.is_simulated(filter)?,

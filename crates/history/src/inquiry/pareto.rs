@@ -20,7 +20,7 @@ pub struct Ranked {
     pub en: String,
     /// Name in Chinese.
     pub zh: String,
-    /// Number of parts with this reason, or of alarms.
+    /// Number of parts with this reason, or of occurrences of this alarm.
     pub n: u64,
     /// Share of all counts from the first entry to this one, 0 to 1.
     pub cumulative: f64,
@@ -82,13 +82,13 @@ pub fn rejects(archive: &Archive, filter: &Filter, listed: usize) -> Result<Reje
     })
 }
 
-/// Returns the alarms that the filter selects by code, see [`by_code`].
+/// Counts the alarms that the filter selects, per code; see [`by_code`].
 pub fn alarms(archive: &Archive, filter: &Filter) -> Result<Vec<Ranked>> {
     checks::known_runs(archive, filter)?;
     Ok(by_code(&archive.alarms(filter)?))
 }
 
-/// Returns the alarms by code, the most frequent first. One that has not been cleared adds no time.
+/// Counts alarms per code, the most frequent first. An alarm that has not been cleared adds no active time.
 pub fn by_code(alarms: &[Alarm]) -> Vec<Ranked> {
     let mut counts = BTreeMap::<[String; 2], (u64, Option<f64>)>::new();
     for alarm in alarms {

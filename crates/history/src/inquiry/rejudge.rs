@@ -72,8 +72,8 @@ pub struct Change {
 pub struct Rejudging {
     recipe: Recipe,
     filter: Filter,
-    /// Data of the recipe by which the parts of each run were measured, by number of the run; for an import without a
-    /// recipe, `recipe` takes its place.
+    /// By number of the run, the data of the recipe by which its parts were measured; `recipe` stands in for an import
+    /// without a recipe.
     bases: BTreeMap<u32, Basis>,
 }
 

@@ -5,12 +5,12 @@ use crate::{Archive, Filter, LotSummary, Moment};
 use quality::Ordered;
 use quality::effectiveness::{Effectiveness, Observed, effectiveness};
 
-/// Quantile of the cycle times that stands in for a missing ideal cycle time.
+/// Quantile of the cycle times that replaces a missing ideal cycle time.
 const QUICKEST: f64 = 0.05;
 
-/// Computes the effectiveness (OEE) of `runs`. The time from start to end of each run is planned time; an alarm that
-/// was not cleared ends with its run, and set-up under an alarm counts as alarm. Returns `None` for imports, which have
-/// no times.
+/// Computes the effectiveness (OEE) of `runs`, without imports and runs that have no end. The time from start to end of
+/// a run is planned time; an alarm that was not cleared ends with its run, and set-up during an alarm counts as alarm
+/// time. Returns `None` when no running time or no tested part is left.
 pub(super) fn use_of_time(
     archive: &Archive,
     filter: &Filter,
@@ -49,8 +49,8 @@ pub(super) fn use_of_time(
     Ok(effectiveness(observed))
 }
 
-/// Returns the spans of a run in which the line was set up: from its start to the test of the first production part,
-/// which includes a calibration, and the cycles of reference parts.
+/// Returns the spans of a run that count as set-up: from its start, with the calibration if there is one, to the test
+/// of the first production part, and the cycle of every reference part.
 fn set_up(archive: &Archive, run: &LotSummary, closed: Moment) -> Result<Vec<(Moment, Moment)>> {
     let parts = |kind: &str, limit| {
         archive.query(&Filter {

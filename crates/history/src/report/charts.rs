@@ -80,7 +80,7 @@ fn point(plot: &mut Plot, chart: &Chart, first: usize, at: usize, value: f64, ra
     plot.svg.text([x, y - 6.0], &style, &rules.join(","));
 }
 
-/// Writes names below as many points as have room; points without names get numbers from 1.
+/// Writes names below the plot, for as many points as there is room; points without names get numbers from 1.
 fn named(plot: &mut Plot, shown: usize, first: usize, names: &[String]) {
     let longest = names
         .iter()

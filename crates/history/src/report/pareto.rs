@@ -10,7 +10,8 @@ use texts::{Lang, Message};
 
 /// Largest number of bars; a note below them counts the other entries.
 const BARS: usize = 12;
-/// Height of a bar with its gap, px. Bars lie between [`LEFT`] and [`RIGHT`], their figures between that and [`WIDTH`].
+/// Height of a bar with its gap, px. Bars lie between [`LEFT`] and [`RIGHT`], their figures between [`RIGHT`] and
+/// [`WIDTH`].
 const ROW: f64 = 20.0;
 const LEFT: f64 = 330.0;
 const RIGHT: f64 = 560.0;
@@ -18,8 +19,8 @@ const WIDTH: f64 = 760.0;
 /// Longest name, in columns: an ASCII character takes one, any other two.
 const NAME: usize = 54;
 
-/// Returns a figure with a bar for each entry, its count, its share of `parts` if given, and the running share; nothing
-/// without entries.
+/// Returns a figure with a bar for each entry, its count, its share of `parts` if given, and the cumulative share;
+/// empty when there are no entries.
 pub(super) fn pareto(
     language: Lang,
     title: &str,

@@ -27,8 +27,8 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    /// Makes an empty plot of this size over these ranges; a range that is a single value is widened by 0.5 on each
-    /// side.
+    /// Makes an empty plot of `width` by `height` px over the ranges `x` and `y`; widens a range that is a single value
+    /// by 0.5 on each side.
     pub fn new([width, height]: [f64; 2], x: [f64; 2], y: [f64; 2]) -> Self {
         let mut plot = Self {
             svg: Svg::new([width, height]),

@@ -1,7 +1,7 @@
 //! Spreadsheet of an export: a summary with native charts, then one row per part.
 //!
-//! Headings and texts are in the language of the paper; numbers show as many digits as on paper. CSV has keys and
-//! codes. Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a
+//! Headings and texts are in the language of the paper (in CSV they are keys and codes); numbers show as many digits as
+//! on paper. Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a
 //! [`Tally`] per parameter stays in memory. After [`ROWS`] rows a new sheet begins. Texts are written as texts, never
 //! as formulas.
 
@@ -228,7 +228,7 @@ fn counted(
     Ok((last + 2).max(row + CHART_ROWS))
 }
 
-/// Returns the count of each class; the name of a class is its lower edge.
+/// Returns the count of each class, named by its lower edge.
 fn classes(it: &Histogram) -> Vec<(String, u64)> {
     let edge = |at: usize| super::plot::ticked(it.from + at as f64 * it.width, it.width);
     it.counts

@@ -26,8 +26,8 @@ impl Formats {
         }
     }
 
-    /// Writes a number, which the sheet shows with `decimals`, or without them with five significant digits as on
-    /// paper. The cell keeps all digits.
+    /// Writes a number, of which the sheet shows `decimals` decimals, or five significant digits as on paper when
+    /// `decimals` is absent. The cell keeps all digits.
     pub fn number(
         &self,
         to: &mut Worksheet,

@@ -37,7 +37,7 @@ pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) 
     page(paper, Format::Landscape, heading, &body)
 }
 
-/// Returns the title of a chart: what it is about, and its kind.
+/// Returns the title of a chart: parameter or bin, and kind of chart.
 fn title(language: Lang, it: &NamedChart<'_>) -> String {
     let share = Message::new("paper", "bin_share").with("bin", it.of);
     let of = match it.chart.kind {

@@ -73,7 +73,8 @@ impl Svg {
     }
 }
 
-/// Returns the greatest width of a text in a file of [`Svg::file`], px; viewers differ in their fonts.
+/// Returns an upper bound for the width of a text in a file of [`Svg::file`], px; the width differs with the viewer's
+/// font.
 pub fn text_width(text: &str) -> f64 {
     const LETTER: f64 = 7.8;
     text.chars().count() as f64 * LETTER

@@ -4,7 +4,8 @@ use lpm::Move;
 
 use super::{Bench, RANGE_MM, stop};
 
-/// Prints how many verdicts differ from those of the peer, and the largest differences of the time of contact.
+/// Prints how many verdicts of the core differ from those of the peer, and the largest differences in the time of
+/// contact.
 pub fn differences(bench: &Bench, kind: &str, ways: &[Move]) {
     let (mut verdicts, mut later, mut earlier) = (Vec::new(), 0.0_f64, 0.0_f64);
     for (index, way) in ways.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! The questions that have a bar, as figures: a line of JSON each, with how many times as fast as parry3d-f64 the core
-//! is.
+//! Prints the questions that have a bar (a limit that the benchmark must meet) as figures, one line of JSON each: how
+//! many times as fast as parry3d-f64 the core is.
 
 use super::timing::{Spread, TURNS, Timed};
 use super::world::{KINDS, moves, world};
@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 
 /// Number of elements at which the bars apply.
 const ELEMENTS: usize = 1_000;
-/// Bar: least ratio for an edit of the peer's raw tree.
+/// Bar: least ratio of an edit of the peer's raw tree to an edit of the core's model.
 const EDIT_BAR: f64 = 3.0;
-/// Bar: least ratio for a rebuild of the peer's compound, against an edit.
+/// Bar: least ratio of a rebuild of the peer's compound to an edit of the core's model.
 const REBUILD_BAR: f64 = 1_000.0;
 
 /// Prints a figure of this benchmark.
@@ -21,7 +21,7 @@ pub fn line(mut figure: Value) {
     println!("{figure}");
 }
 
-/// Measures and prints all figures; `clock` is what reading the clock costs, ns.
+/// Measures and prints all figures; `clock` is the cost of reading the clock, ns.
 pub fn print(clock: f64) {
     let world = world(ELEMENTS);
     let bench = Bench::new(&world, clock);
@@ -69,7 +69,7 @@ fn question(bench: &Bench, kind: &str, ways: &[Move]) {
     }
 }
 
-/// Prints the ratios of mean and 99th percentile, with their bars.
+/// Prints the ratios of peer to core for mean and 99th percentile, each with its bar.
 fn against(name: &str, n: usize, ours: &Spread, peer: &Spread, bars: [Option<f64>; 2]) {
     let ratios = [("mean", ours.mean, peer.mean), ("p99", ours.p99, peer.p99)];
     for ((which, ours_ns, peer_ns), bar) in ratios.into_iter().zip(bars) {

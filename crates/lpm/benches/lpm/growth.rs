@@ -6,9 +6,9 @@ use super::world::{KINDS, gripper, moves, world};
 use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 use serde_json::json;
 
-/// Bar: the ratio of the largest to the smallest cost of a local move stays below this.
+/// Bar: the ratio of the largest to the smallest cost of a local move must stay below this.
 const BAR: f64 = 2.0;
-/// Local moves.
+/// Kinds of local moves.
 const LOCAL: [&str; 2] = ["jog5", "local300"];
 
 /// A cost (time, or memory) at every size.

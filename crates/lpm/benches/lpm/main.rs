@@ -1,10 +1,10 @@
 //! Speed of the collision core beside that of its peers, measured in one run: `cargo bench -p lpm`.
 //!
-//! Prints nanoseconds and ratios (peer to core) of mean and 99th percentile: with warm caches, in random order, and
-//! with cold caches. Prints how many answers differ and, below a missed bar, where the time goes ([`missed`]). `--
-//! --quick` stops at 1,000 elements, `-- --bar` measures only 1,000 elements, `-- --growth` measures how the cost of
-//! the core alone grows from 10 to 100,000 elements. `--json` prints the questions with a bar, at 1,000 elements or over
-//! all sizes (`--growth`), as figures, a line of JSON each.
+//! Prints nanoseconds, and the ratios of peer to core for mean and 99th percentile: with warm caches, in random order,
+//! and with cold caches. Prints how many answers differ and, below a missed bar (a ratio that the core must reach),
+//! where the time goes ([`missed`]). `-- --quick` stops at 1,000 elements, `-- --bar` measures only 1,000 elements, `--
+//! --growth` measures how the cost of the core alone grows from 10 to 100,000 elements. `--json` prints the questions
+//! with a bar, at 1,000 elements or over all sizes (`--growth`), as figures, one line of JSON each.
 
 mod answers;
 mod figures;
@@ -211,7 +211,7 @@ impl Bench {
         row(kind, &share, "clearance", &least.spread(), &[]);
     }
 
-    /// Measures the first contact with a margin of half a millimetre, for which both sides must search.
+    /// Measures the first contact with a margin of half a millimetre: both core and peer must then search iteratively.
     fn margins(&self, world: &World) {
         for kind in ["jog5", "descend", "local300"] {
             let mut ways = moves(world, kind, QUERIES);
@@ -238,7 +238,7 @@ impl Bench {
         self.any_row("far above", "any hit", || Timed::new(&ways, self.clock));
     }
 
-    /// Measures queries whose order changes from pass to pass, so that the processor does not learn it.
+    /// Measures queries whose order changes from pass to pass, so that the branch predictor does not learn it.
     fn unlearned_kind(&self, kind: &str, ways: &[Move]) {
         self.any_row(kind, "any, no order", || Timed::unlearned(ways, self.clock));
     }

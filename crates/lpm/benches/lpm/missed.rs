@@ -1,4 +1,4 @@
-//! Breaks down the time behind a missed bar: measures parts of the same questions in the same run.
+//! Shows where the time behind a missed bar goes: measures parts of the same questions in the same run.
 
 use lpm::{Move, Mover};
 
@@ -19,9 +19,10 @@ pub fn lifted<'a>(ways: &[Move<'a>]) -> Vec<Move<'a>> {
     above
 }
 
-/// Prints, below a missed bar, what the processing of poses costs (all elements lie far below), and what poses and the
-/// search for overlapping boxes cost together: four specks in the corners of the gripper's box meet almost nothing, so
-/// no hit ends the question early. This shows where the time goes, not that the bar is out of reach.
+/// Prints, below a missed bar, the cost of processing poses alone (all elements lie far below), and the cost of poses
+/// plus the search for overlapping boxes. For the latter the mover is four specks in the corners of the gripper's box:
+/// they meet almost nothing, so no hit ends the question early. This shows where the time goes; it does not show that
+/// the bar is out of reach.
 pub fn of_question(
     bench: &Bench,
     ways: &[Move],
@@ -48,8 +49,9 @@ pub fn of_question(
     );
 }
 
-/// Prints how long copying the model takes. A copy writes the same data once into memory of the same structure, so no
-/// building can be faster. Where the system reclaims memory between two models, copying and building both pay for it.
+/// Prints how long copying the model takes. A copy writes the same data once into memory of the same structure, so that
+/// no building can be faster. Where the system reclaims memory between two models, copying and building both pay for
+/// it.
 pub fn of_build(copy: &Spread, ours: &Spread, peer: &Spread) {
     row("build", "", "copy of it", copy, &[*peer]);
     if peer.mean < BAR * ours.mean {

@@ -1,9 +1,8 @@
 //! The peers: parry3d in single and in double precision, each used in the ways that its interface offers.
 //!
-//! `compound`: the scene is one `Compound`, the mover is another, and a question is one call. `pairs`: each part of the
-//! mover is tested against the raw `Bvh`, and pairs go through `cast_shapes` or `intersection_test`; other than the
-//! call on compounds, this can stop at the first hit. Cylinders lie along the native axis of the library (y), its best
-//! case.
+//! `compound`: scene and mover are one `Compound` each, and a question is one call. `pairs`: each part of the mover is
+//! tested against the raw `Bvh`, and the pairs found go through `cast_shapes` or `intersection_test`; unlike the call
+//! on compounds, this can stop at the first hit. Cylinders lie along the native axis of the library (y), its best case.
 
 /// Defines a module for one precision of the library.
 macro_rules! peer {
@@ -144,7 +143,7 @@ macro_rules! peer {
                     found
                 }
 
-                /// Returns true when there is any hit, part by part over the raw tree.
+                /// Returns true when there is a hit, part by part over the raw tree.
                 pub fn pairs_any(&self, way: &lpm::Move) -> bool {
                     let (from, run) = (pose(&way.from), run(way));
                     let still = run == Vector::ZERO;
@@ -201,7 +200,7 @@ macro_rules! peer {
                 vector([to[0] - from[0], to[1] - from[1], to[2] - from[2]])
             }
 
-            /// Returns options that ask for verdict and time only, without the geometry of the impact.
+            /// Returns shape-cast options for verdict and time only, without the geometry of the impact.
             fn options(until: $real) -> ShapeCastOptions {
                 ShapeCastOptions {
                     max_time_of_impact: until,

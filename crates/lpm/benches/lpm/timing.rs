@@ -1,14 +1,14 @@
-//! Times each query alone, subtracts the cost of the clock and takes the best of several warm passes; then reports
+//! Times each query separately, subtracts the cost of the clock and takes the best of several warm passes; then reports
 //! mean, median and 99th percentile over the queries.
 //!
-//! In the warm rows contestants take turns, several passes each, so that all see the same state of the machine: on a
-//! shared machine everything may take 50 % longer for seconds, which distorts a ratio of two figures that were taken
-//! one after the other (as in the cold rows, and in those below a missed bar). In a warm row, caches and branch
-//! prediction know these very queries. The rows in random order shuffle the queries before each pass and use the median
-//! of the passes.
+//! In the warm rows the contestants (core and peers) take turns of several passes each, so that all see the same state
+//! of the machine. On a shared machine everything may take 50 % longer for seconds; this distorts a ratio of two times
+//! measured one after the other, as in the cold rows and in those below a missed bar. In a warm row, caches and branch
+//! prediction have learned these very queries. The rows in random order shuffle the queries before each pass and use
+//! the median of the passes.
 //!
-//! A clock with coarse steps reads too short, most of all in the best of several readings: with steps of 10 ns some 2
-//! ns too short for a query of 50 ns, and less for an empty one.
+//! A clock with coarse steps reads too short, most of all in the best of several readings: with steps of 10 ns by about
+//! 2 ns for a query of 50 ns, and by less for an empty query.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -21,7 +21,7 @@ pub const TURNS: usize = 4;
 const PASSES: usize = 7;
 /// Number of empty queries that measure the cost of the clock.
 const EMPTY: usize = 2_000;
-/// Number of bytes written before each cold query: more than any cache of the machines in use holds.
+/// Number of bytes written before each cold query: more than the caches of the machines in use hold.
 const FLUSHED_BYTES: usize = 48 << 20;
 
 /// Distribution of the time of one query, ns.
@@ -44,7 +44,7 @@ impl Spread {
     }
 }
 
-/// Returns what reading the clock costs, ns: the time of an empty query, measured like all others.
+/// Returns the cost of reading the clock, ns: the time of an empty query, measured like all others.
 pub fn clock_ns() -> f64 {
     warm(&[(); EMPTY], 0.0, |()| ()).mean
 }
@@ -57,7 +57,7 @@ pub struct Timed<'a, Q> {
     readings: Vec<Vec<f64>>,
     /// Order of the queries, as indices.
     order: Vec<usize>,
-    /// Shuffles the order before each pass; `None`: the order stays.
+    /// Shuffles the order before each pass; `None` keeps the order.
     dice: Option<Dice>,
 }
 
@@ -134,7 +134,7 @@ pub fn cold<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread
     Spread::of(times.collect())
 }
 
-/// Number of attempts at each round within a turn.
+/// Number of attempts at each round within a turn; the best one counts.
 const TRIES: usize = 2;
 
 /// Rounds of a large operation, each with the best time of all turns, ns.
@@ -149,7 +149,7 @@ impl Rounds {
         }
     }
 
-    /// Runs all rounds; the time of preparing them with `ready` and of dropping their results does not count.
+    /// Runs all rounds; the measured time excludes the preparation `ready` and the drop of the results.
     pub fn turn<S, A>(&mut self, mut ready: impl FnMut() -> S, mut run: impl FnMut(S) -> A) {
         for best in &mut self.best {
             for _ in 0..TRIES {
@@ -163,8 +163,8 @@ impl Rounds {
         }
     }
 
-    /// Returns the distribution of the best time of each round. Each round does the same work, so the percentiles
-    /// reflect the machine.
+    /// Returns the distribution, over the rounds, of the best time of each round. All rounds do the same work, so that
+    /// the percentiles reflect the machine.
     pub fn spread(self) -> Spread {
         Spread::of(self.best)
     }

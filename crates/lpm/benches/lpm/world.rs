@@ -43,7 +43,7 @@ impl Dice {
 pub struct World {
     /// Body and pose of each element, the plate first.
     pub elements: Vec<(Shape, Pose)>,
-    /// Edge of the square plate, mm; the plate lies between 0 and this in x and y, with its top at z = 0.
+    /// Edge length of the square plate, mm; the plate extends from 0 to this in x and y, with its top at z = 0.
     pub edge_mm: f64,
     /// Height of the highest stack, mm.
     pub top_mm: f64,
@@ -59,7 +59,7 @@ pub fn world(count: usize) -> World {
     };
     let mut elements = vec![(plate, Pose::at([edge_mm / 2.0, edge_mm / 2.0, -10.0]))];
     let mut top_mm: f64 = 0.0;
-    // Fills stack after stack. Once the plate is full, another round starts above the stacks; this happens only in
+    // Fills stack after stack. When the plate is full, another round continues above the stacks; this happens only in
     // the smallest worlds.
     for stack in 0.. {
         if elements.len() > count {

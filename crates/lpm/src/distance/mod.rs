@@ -18,14 +18,14 @@ pub(crate) mod upright;
 use super::piece::{NOISE, Piece};
 use super::vector::{Vec3, add, dot, length, negate, reach, scale, sub};
 
-/// Difference between bounds at which a search stops, mm: a thousandth of the distance by which a move may be blocked
-/// early.
+/// Difference of lower and upper bound at which a search stops, mm: a thousandth of the distance by which a move may be
+/// blocked early.
 pub(crate) const RESOLUTION_MM: f64 = 1e-9;
 
 /// Lower bound of the distance between an element and a mover, with its plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
-    /// Proven separation along `normal`, mm; proves nothing unless it is above zero.
+    /// Proven separation along `normal`, mm; a value of 0 or less proves nothing.
     pub(crate) lower: f64,
     /// Normal of the best plane: unit vector from the element to the mover.
     pub(crate) normal: Vec3,
@@ -44,7 +44,7 @@ pub(crate) struct Proposal {
 
 /// Returns the rounding bound of one evaluated plane between two pieces, mm.
 ///
-/// Only the difference of their places counts: a kilometre that is common to both costs no digit.
+/// Only the difference of their positions counts: a kilometre common to both costs no digit.
 pub(crate) fn noise(a: &Piece, b: &Piece, shift: Vec3) -> f64 {
     NOISE * (a.span + b.span + reach(shift) + reach(between(a, b, shift)))
 }
@@ -67,7 +67,7 @@ pub(crate) fn separation(a: &Piece, b: &Piece, shift: Vec3, n: Vec3) -> f64 {
 
 /// Returns a lower bound of the distance of `mover`, displaced by `shift`, from `element`.
 ///
-/// `hint` is a direction that may already be good, such as the last plane of the same pair.
+/// `hint` is a direction that may already be good, such as the best plane of an earlier call for the same pair.
 pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3>) -> Gap {
     let c = between(element, mover, shift);
     let (proposal, lower) = if element.upright && mover.upright {
@@ -83,8 +83,8 @@ pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3
     }
 }
 
-/// Returns the proposal of the closed form; refines it by the general search when its direction is the difference of
-/// large numbers (two corners a micrometre apart).
+/// Returns the proposal of the closed form. When its direction is the difference of large numbers (two corners a
+/// micrometre apart), refines it by the general search.
 fn closed_form(element: &Piece, mover: &Piece, shift: Vec3, c: Vec3) -> (Proposal, f64) {
     let (proposal, distance) = upright::propose(element, mover, c);
     let lower = separation(element, mover, shift, proposal.normal);

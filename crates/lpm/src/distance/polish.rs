@@ -10,15 +10,15 @@ use super::simplex::support;
 use crate::piece::Piece;
 use crate::vector::{Vec3, add, cross, dot, scale, unit};
 
-/// Most directions that are tried.
+/// Maximum number of directions to try.
 const MOST_TRIALS: usize = 600;
-/// Most support points that are kept.
+/// Maximum number of support points to keep.
 const MOST_CUTS: usize = 18;
-/// How far from the current direction the first trial may look (trust region): tangent of the angle.
+/// Size of the first trust region (how far from the current direction a trial may look): tangent of the angle.
 const FIRST_REACH: f64 = 1e-2;
-/// Trust regions of further rounds, one after each round that ended without proof of the best direction.
+/// Trust regions of the further rounds; each begins when a round ended without proof that its direction is the best.
 const AGAIN_REACHES: [f64; 3] = [1e-4, 1e-6, 1e-8];
-/// Below this trust region a trial changes nothing.
+/// Size of the trust region below which a trial changes nothing.
 const LAST_REACH: f64 = 1e-15;
 
 /// A linear bound of the separation over the tangent plane: `height + slope·(s, t)`.
@@ -58,7 +58,7 @@ pub(super) fn polished(a: &Piece, b: &Piece, c: Vec3, n: Vec3, best: f64, resolu
             let Some(next) = again.next() else {
                 break;
             };
-            // Cuts from distant directions may have hidden nearby ones, so the round is repeated without them.
+            // Cuts from distant directions may have hidden nearby ones, so the next round starts without them.
             reach = *next;
             points = vec![support(a, b, c, n).w];
             continue;
@@ -103,7 +103,7 @@ fn tangents(n: Vec3) -> [Vec3; 2] {
     [u, cross(n, u)]
 }
 
-/// Returns the place in the square of half side `reach` at which the minimum of the cuts is highest, and this minimum.
+/// Returns the place in the square of half side `reach` at which the minimum of the cuts is highest, and this value.
 fn highest(cuts: &[Cut], reach: f64) -> ([f64; 2], f64) {
     let value = |place: [f64; 2]| {
         cuts.iter()

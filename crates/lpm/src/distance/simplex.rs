@@ -1,22 +1,22 @@
-//! Nearest points of any two convex pieces: walks over simplices of their difference (GJK).
+//! Nearest points of any two convex pieces: a walk over simplices of their difference (GJK).
 //!
-//! This is the method of Gilbert, Johnson and Keerthi on `b - a`, with three differences: the normal of a triangle is
-//! computed from its edges, not from the (tiny) nearest vector; a nearest vector on an edge is made orthogonal twice;
-//! and the best plane so far is kept, so that further steps never make the answer worse.
+//! This is the method of Gilbert, Johnson and Keerthi on `b - a`, with three differences: the normal of a triangle
+//! comes from its edges, not from the (tiny) nearest vector; a nearest vector on an edge is made orthogonal twice; and
+//! the walk keeps the best plane so far, so that further steps never worsen the answer.
 
 use super::polish::polished;
 use super::{Proposal, RESOLUTION_MM};
 use crate::piece::{NOISE, Piece};
 use crate::vector::{Vec3, add, along, cross, dot, length, negate, scale, sub, unit};
 
-/// Most steps of the walk. Polytopes need fewer than 20, two tilted rims up to 60.
+/// Maximum number of steps of the walk. Polytopes need fewer than 20, two tilted rims up to 60.
 const MOST_STEPS: usize = 128;
 
-/// Most steps in which the nearest vector does not get shorter. The length converges to second order but the plane only
-/// to first order, so the plane may still improve when the length has no digits left.
+/// Maximum number of steps in which the nearest vector does not get shorter. The length converges to second order, the
+/// plane only to first order: the plane may still improve when the length has no digits left.
 const MOST_STALLS: usize = 12;
 
-/// Overlaps shallower than this are checked again, mm, because a flat simplex may seem to contain the origin.
+/// Depth below which an overlap is checked again, mm, because a flat simplex may seem to contain the origin.
 const DOUBTFUL_MM: f64 = 1e-3;
 
 /// A corner of the simplex: a point of `b - a` and the point of `a` from which it was computed.
@@ -139,7 +139,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Returns the point of `b - a` that reaches least far along `n`.
+/// Returns the point of `b - a` with the least coordinate along `n`.
 pub(super) fn support(a: &Piece, b: &Piece, c: Vec3, n: Vec3) -> Corner {
     let on_a = a.farthest(n);
     Corner {

@@ -24,7 +24,7 @@ struct Flat {
     on_a: Vec2,
 }
 
-/// Returns the best plane between the upright pieces `a` and `b`, and their distance but for rounding, mm; `c` is the
+/// Returns the best plane between the upright pieces `a` and `b`, and their distance up to rounding, mm; `c` is the
 /// vector between their centres.
 pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3) -> (Proposal, f64) {
     let (foot_a, half_a) = footprint(a);
@@ -47,12 +47,12 @@ fn footprint(piece: &Piece) -> (Footprint, f64) {
             )
         }
         Form::Cylinder { radius, half } => (Footprint::Disc(radius), half),
-        // Triangles are never upright. A point in place of one would at worst yield a poor plane, never a false proof.
+        // Triangles are never upright; a point in place of one would at worst give a poor plane, never a false proof.
         Form::Triangle(_) => (Footprint::Disc(0.0), 0.0),
     }
 }
 
-/// Returns the signed gap in z, and the height, relative to the centre of `a`, of the point of `a` nearest to `b`.
+/// Returns the signed gap in z, mm, and the height of the point of `a` nearest to `b`, relative to the centre of `a`.
 fn heights(half_a: f64, half_b: f64, c: f64) -> (f64, f64) {
     let apart = c.abs() - half_a - half_b;
     if apart > 0.0 {
@@ -90,7 +90,7 @@ fn footprints(a: Footprint, b: Footprint, c: Vec2) -> Flat {
     }
 }
 
-/// Returns `flat` with its gap shrunk: its two points are grown to discs of radius `ra` and `rb`.
+/// Returns `flat` after its two points have grown to discs of radius `ra` and `rb`, which shrinks the gap.
 fn shrunk(flat: Flat, ra: f64, rb: f64) -> Flat {
     let distance = flat.apart[0].hypot(flat.apart[1]);
     let left = distance - ra - rb;
@@ -120,7 +120,7 @@ fn towards(flat: Flat, fraction: f64) -> Vec2 {
     ]
 }
 
-/// Returns the nearest points of a rectangle (half extents, first axis `x`, centred at the origin) and the point `p`.
+/// Returns the nearest points of a rectangle (half extents, first axis `x`, centred at the origin) and a point `p`.
 fn point_from_rectangle(half: Vec2, x: Vec2, p: Vec2) -> Flat {
     let local = [p[0] * x[0] + p[1] * x[1], p[1] * x[0] - p[0] * x[1]];
     let near = [
@@ -147,7 +147,7 @@ fn rectangles(ha: Vec2, xa: Vec2, hb: Vec2, xb: Vec2, c: Vec2) -> Flat {
         return parallel(ha, hb, xa, c);
     }
     if footprints_meet(ha, xa, hb, xb, c) {
-        // Any nearest point may be reported as the place of contact; this is the middle of their region.
+        // Any nearest point may serve as the place of contact; this is the middle of all of them.
         return Flat {
             apart: [0.0, 0.0],
             on_a: point_from_rectangle(ha, xa, c).on_a,

@@ -1,18 +1,18 @@
 //! Exact answers in whole numbers for some bodies: the reference for tests and benchmarks.
 //!
-//! Bodies are blocks in any orientation that a quaternion of whole numbers describes, upright cylinders, and triangles.
-//! Moves are straight. Sizes, places and moves are whole multiples of one unit that the caller chooses (such as
-//! 1/1024 mm). So the verdict is the sign of whole numbers, without rounding, tolerance or search. This module shares
-//! no code with the core.
+//! Bodies are blocks whose orientation is a quaternion of integers, upright cylinders, and triangles. Moves are
+//! straight. Sizes, places and moves are integer multiples of a unit that the caller chooses (such as 1/1024 mm). The
+//! verdict is therefore the sign of an integer, without rounding, tolerance or search. This module shares no code with
+//! the core.
 //!
 //! - `polytope` handles two polytopes, `round` a cylinder with a cylinder or with an upright block.
 //! - The verdict is exact. The time of first contact is accurate to a few units in the last place of an `f64`, because
-//!   roots are irrational.
+//!   roots may be irrational.
 //! - [`first_contact`] panics for a cylinder with a tilted block or a triangle, which have no closed form in whole
 //!   numbers.
 //!
-//! Range: differences of places, sizes and moves below 2^28 units, quaternions with members of one digit; moves along
-//! few axes may be longer. Beyond this range a debug build panics on overflow.
+//! Range: differences of places, sizes and moves below 2^28 units, quaternions with one-digit members; moves along few
+//! axes may be longer. Beyond this range a debug build panics on overflow.
 
 mod polytope;
 mod round;
@@ -80,7 +80,7 @@ impl Body {
         }
     }
 
-    /// Returns the body as a [`Shape`] of the core; `unit_mm` should be a power of two, so that nothing is rounded.
+    /// Returns the body as a [`Shape`] of the core; with a power of two as `unit_mm` nothing is rounded.
     pub fn shape(&self, unit_mm: f64) -> Shape {
         let mm = |units: i64| units as f64 * unit_mm;
         match self.form {

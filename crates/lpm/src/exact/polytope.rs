@@ -1,9 +1,9 @@
 //! Contact of two convex polytopes whose corners are whole numbers.
 //!
-//! Two polytopes meet exactly when the vector between them lies in their difference. This difference is bounded by
-//! planes normal to their faces and normal to the cross products of their edges. Along a translation each pair of
-//! parallel planes limits the move to an interval; the bodies meet in the intersection of all intervals. Superfluous
-//! planes do no harm, because the difference lies between them as well.
+//! Two polytopes meet exactly when the vector between them lies in their Minkowski difference. This difference is
+//! bounded by planes normal to their faces and normal to the cross products of their edges. Along a translation each
+//! pair of parallel planes restricts the contact to an interval of time; the bodies meet in the intersection of all
+//! intervals. Superfluous planes do no harm, because the difference lies between them as well.
 
 use super::Form;
 use super::times::Stretch;
@@ -87,7 +87,7 @@ fn triangle(corners: [Vector; 3]) -> Polytope {
         normal, [0; 3],
         "a triangle that is a segment has no exact truth here"
     );
-    // The rims of a flat body count as faces, so that a plane separates it from a body beside it in its own plane.
+    // The rims of a flat body count as faces: their planes separate it from another body in its own plane.
     let rims = edges.iter().map(|edge| cross(*edge, normal));
     Polytope {
         scale: 1,

@@ -1,7 +1,7 @@
 //! Contact of an upright cylinder with another one, or with a block that is turned only about z.
 //!
-//! The Minkowski sum of both is an interval in z. On the baseplate it is a disc, or a rectangle with round corners: two
-//! slabs, and four discs at the corners, in the frame of the rectangle.
+//! The Minkowski sum of both bodies is an interval in z times a figure on the baseplate: a disc, or a rectangle with
+//! round corners (two slabs, and four discs at the corners, in the frame of the rectangle).
 
 use super::Form;
 use super::times::{Stretch, Time};
@@ -103,7 +103,8 @@ fn rounded(
 
 /// Returns the first time in `during` at which a point is within `radius` of the origin.
 fn disc(during: Stretch, place: [i128; 2], run: [i128; 2], radius: i128) -> Option<f64> {
-    // `a t^2 + 2 b t + c` is the squared distance minus the squared radius, for a run divided by its greatest divisor.
+    // `a t^2 + 2 b t + c` is the squared distance minus the squared radius, for the run divided by the greatest common
+    // divisor of its components.
     let step = divisor(run[0], run[1]).max(1);
     let run = run.map(|member| member / step);
     let a = run[0] * run[0] + run[1] * run[1];

@@ -21,7 +21,7 @@ fn keys<'a>(kind: &str, extra: &[&'a str]) -> Option<Vec<&'a str>> {
     Some([own, extra].concat())
 }
 
-/// Reads a body and its pose; the table may hold the `extra` keys too.
+/// Reads a body and its pose; the table may also hold the `extra` keys.
 pub(super) fn body<'a>(
     field: &Field<'a>,
     extra: &[&str],

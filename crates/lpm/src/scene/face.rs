@@ -2,14 +2,15 @@
 
 use crate::vector::{Vec3, cross, dot, length, sub, unit};
 
-/// Tolerance for a corner that lies off the plane of the face, or inside the place that a convex face would give it;
-/// relative to the distance from the first corner to the farthest. Most programs write six digits, which gives errors
-/// of 1e-5 for a face near the origin and larger ones for a face far from it. Two ways of cutting a face that is not
-/// flat may differ by as much as the tolerance: 1 um for 10 mm. A dent within the tolerance only blocks more, because
-/// the triangles cover every flat face.
+/// Tolerance for a corner that lies off the plane of the face, or dents the outline of a convex face; relative to the
+/// distance from the first corner to the farthest. Most programs write six digits, which gives errors of 1e-5 for a
+/// face near the origin and larger ones for a face far from it. Two ways of cutting a face that is not flat may differ
+/// by as much as the tolerance: 1 um for 10 mm. A dent within the tolerance only blocks more, because the triangles
+/// cover every flat face.
 const FLAT: f64 = 1e-4;
 
-/// Returns true for a flat convex face, and for a face no wider than the tolerance: a segment or a point has no plane.
+/// Returns true for a flat convex face, and for a face no wider than the tolerance, since a segment or a point has no
+/// plane.
 pub(super) fn is_flat_and_convex(corners: &[Vec3]) -> bool {
     let from_first: Vec<Vec3> = corners.iter().map(|it| sub(*it, corners[0])).collect();
     let farthest = longest(&from_first);
@@ -43,7 +44,8 @@ fn longest(ways: &[Vec3]) -> Vec3 {
 }
 
 /// Returns true when the corners go round the face once: along any direction, a convex face then runs once forth and
-/// once back. A face that goes round twice must be refused, because `solid` counts crossings and edges as even or odd.
+/// once back. A face that goes round twice is not acceptable, because `solid` counts crossings and edges as even or
+/// odd.
 fn is_walked_once(flat: &[[f64; 2]]) -> bool {
     let places = || flat.iter().map(|it| it[0]);
     let span = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
@@ -51,8 +53,8 @@ fn is_walked_once(flat: &[[f64; 2]]) -> bool {
     steps.map(|(a, b)| (b - a).abs()).sum::<f64>() <= 3.0 * span
 }
 
-/// Returns true when no corner lies to the right of an edge by more than `slack`. The distance is measured as the width
-/// of the triangle over the edge, because the direction of a short edge is mostly rounding.
+/// Returns true when no corner lies to the right of an edge by more than `slack`. The distance is the width of the
+/// triangle over the edge, because the direction of a short edge is mostly rounding.
 fn is_left_of_edges<'a>(
     round: impl Iterator<Item = &'a [f64; 2]> + Clone,
     corners: &[[f64; 2]],

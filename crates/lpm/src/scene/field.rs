@@ -1,4 +1,4 @@
-//! A value with its path in the file, so that every error message can name the field.
+//! A value with its path in the file, which every error message names.
 
 use super::node::{Node, Unreadable};
 

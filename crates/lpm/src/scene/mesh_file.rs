@@ -1,22 +1,22 @@
 //! Reads triangles from STL (binary or text) and OBJ; the extension selects the format.
 //!
-//! Damaged or ambiguous files are refused: a mesh that lost a triangle may be open, and an open mesh gives a false
-//! *clear* for a body inside it. Every error names the line, the value found and the value expected. The readers are
-//! part of this crate for two reasons: stl_io returns f32, which shifts a corner at 100 mm in a text STL with many
-//! digits by 4e-6 mm, while 1e-6 mm is promised; and the check of which OBJ faces may be cut into triangles is needed
-//! here anyway.
+//! The readers refuse damaged or ambiguous files: a mesh that lost a triangle may be open, and an open mesh gives a
+//! false *clear* for a body inside it. Every error names the line, the value found and the value expected. The readers
+//! are part of this crate for two reasons. The library stl_io returns f32, which shifts a corner at 100 mm in a text
+//! STL with many digits by 4e-6 mm, while this crate promises 1e-6 mm. And the check which OBJ faces may be cut into
+//! triangles is needed here anyway.
 
 use super::field::{Field, SceneError};
 use super::{obj, stl};
 use crate::Mesh;
 
-/// Function that returns the bytes of a mesh file named in a scene, or the reason why it cannot.
+/// Function that returns the bytes of a mesh file that a scene names, or the reason why it cannot.
 pub type MeshFiles<'a> = dyn FnMut(&str) -> Result<Vec<u8>, MeshFault> + 'a;
 
 /// Reason why a mesh file is refused. Lines and triangles count from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshFault {
-    /// The function could not read the file, for this reason.
+    /// The caller's function could not read the file, for this reason.
     #[error("{0}")]
     File(String),
     /// A line of a text file holds something that is not allowed.
@@ -43,10 +43,10 @@ pub enum MeshFault {
         /// Its first non-finite number.
         found: f64,
     },
-    /// An STL file is not valid text, and its length is not that of a binary file with its triangle count.
+    /// An STL file is not valid text, and its length does not fit the triangle count of a binary file.
     #[error("{text}; a binary STL of {count} triangles has {expected} bytes, not {found}")]
     Length {
-        /// Error met when the file was read as text.
+        /// Error of the attempt to read the file as text.
         text: Box<Self>,
         /// Number of triangles that the header states.
         count: u32,
@@ -58,7 +58,7 @@ pub enum MeshFault {
     /// An STL file is not valid text, and is shorter than the header of a binary file.
     #[error("{text}; a binary STL has {head} bytes or more, not {found}")]
     Short {
-        /// Error met when the file was read as text.
+        /// Error of the attempt to read the file as text.
         text: Box<Self>,
         /// Length of the header of a binary file, bytes.
         head: usize,
@@ -67,7 +67,7 @@ pub enum MeshFault {
     },
 }
 
-/// Most characters of a word that a message repeats; a word in a damaged file may be as long as the file.
+/// Greatest number of characters of a word that a message repeats; a word in a damaged file may be as long as the file.
 const REPEATED: usize = 40;
 
 pub(super) fn load(field: &Field, scale: f64, files: &mut MeshFiles) -> Result<Mesh, SceneError> {
@@ -92,9 +92,9 @@ pub(super) fn load(field: &Field, scale: f64, files: &mut MeshFiles) -> Result<M
     }
 }
 
-/// Converts a file to text whose lines end with LF; in the file they may end with LF, CR or both. Bytes that are not
-/// UTF-8 (Latin-1 in names and comments) are replaced, so no keyword or number can contain them. Fails on a zero byte:
-/// no text has one, but a block that a disk or a transfer lost does.
+/// Converts a file to text whose lines end with LF; in the file they may end with LF, CR or both. Replaces bytes that
+/// are not UTF-8 (Latin-1 in names and comments), so that no keyword or number can contain them. Fails on a zero byte:
+/// no text has one, but a block of zeros shows a damaged disk or transfer.
 pub(super) fn text(bytes: &[u8]) -> Result<String, MeshFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes)

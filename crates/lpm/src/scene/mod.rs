@@ -5,8 +5,8 @@
 //! files after the line number), the value found and the value expected. This module opens no file: a function of the
 //! caller supplies mesh files.
 //!
-//! Parts that only the rig needs (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) are checked but not
-//! applied.
+//! The reader checks the parts that only the rig needs (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`),
+//! but does not apply them.
 
 mod body;
 mod face;
@@ -62,7 +62,7 @@ pub struct Scene {
 }
 
 impl Named {
-    /// Returns the shape with the pose of the body applied, relative to the frame that moves.
+    /// Returns the shape with the pose of the body applied, in the frame that moves.
     pub fn carried(&self) -> Shape {
         if self.pose == Pose::IDENTITY {
             self.shape.clone()
@@ -72,7 +72,7 @@ impl Named {
     }
 }
 
-/// Reads and checks a scene that names nothing outside itself.
+/// Reads and checks a scene that refers to nothing outside itself; `files` supplies its mesh files.
 ///
 /// # Errors
 /// Fails with the first [`SceneError`]: bodies in the order of the file come first, then the parts for the rig.
@@ -80,7 +80,7 @@ pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<S
     read_scene_of_rig(text, format, files, &RigNames::default())
 }
 
-/// Reads and checks a scene that may also name the actuators and bodies of its rig, which `rig_names` lists.
+/// Reads and checks a scene that may also refer to actuators and bodies of its rig; `rig_names` lists these.
 ///
 /// # Errors
 /// Fails as [`read_scene`] does.

@@ -6,7 +6,7 @@ use super::{Named, Scene, body, without_mark};
 use crate::{LARGEST_COORDINATE_MM, Pose};
 use std::collections::HashSet;
 
-/// A move from a file; mover and elements are given by their indices in the scene.
+/// A move from a file; it refers to mover and elements by their indices in the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoveOrder {
     /// Name, unique in the file.
@@ -17,7 +17,7 @@ pub struct MoveOrder {
     pub from: Pose,
     /// Pose of the mover at the end.
     pub to: Pose,
-    /// Distance to every element that the mover must exceed, mm, >= 0.
+    /// Distance to every element that the mover must exceed during the move, mm, >= 0.
     pub margin_mm: f64,
     /// Elements that the check leaves out, as indices into [`Scene::elements`].
     pub ignore: Vec<usize>,

@@ -1,9 +1,9 @@
 //! Reads OBJ: vertices and faces, statement by statement.
 //!
 //! A statement is one line; a backslash at its end continues it on the next line. A comment always ends with its line.
-//! Points, lines, normals, names and the like contain no surface and are skipped. Every other keyword is refused: it
-//! may be a surface (`curv`, `surf`) or a damaged face (`F`), and a lost face would leave the mesh open. A file that
-//! was cut off between two faces is not detected, because the format has no end mark.
+//! The reader skips points, lines, normals, names and other statements without a surface. It refuses every other
+//! keyword: this may be a surface (`curv`, `surf`) or a damaged face (`F`), and a lost face would leave the mesh open.
+//! It does not detect a file that was cut off between two faces, because the format has no end mark.
 
 use super::face;
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
@@ -96,8 +96,8 @@ impl<'a> Statement<'a> {
         Ok(Some(statement))
     }
 
-    /// Fails when a skipped statement contains a keyword behind a backslash: a name may merely end in a backslash, and
-    /// the next line would be lost.
+    /// Fails when a skipped statement with a continuation contains the keyword `v` or `f`: the backslash may only be
+    /// the end of a name, and the next statement would be lost.
     fn check_end(&self) -> Result<(), MeshFault> {
         let taken = self.words.iter().find(|word| ["v", "f"].contains(word));
         match taken {

@@ -1,8 +1,8 @@
 //! Checks the parts of a scene that only the rig needs: carriers, actuators, pairs, mates and the table of the guard.
 //!
 //! The guard applies these parts; this module only checks them, so that whichever program reads the file first reports
-//! a mistake. The guard itself checks its further demands (its eight actuators, an axis of unit length, a free stroke).
-//! The reader of `[[mate]]` checks the content of each entry.
+//! a mistake. The guard itself checks what else it requires (its eight actuators, an axis of unit length, a free
+//! stroke). The reader of `[[mate]]` checks the content of each entry.
 
 use super::Scene;
 use super::field::{Field, SceneError, Table, expected_id, refuse};
@@ -111,7 +111,7 @@ impl Names<'_> {
     }
 }
 
-/// Reads the actuators with their ids. References between them are checked later, when all names are known.
+/// Reads the actuators with their ids; leaves references between them to a later check, when all names are known.
 fn actuators<'a>(root: &Table<'a>) -> Result<Vec<(&'a str, Table<'a>)>, SceneError> {
     let mut known = HashSet::new();
     let mut actuators = Vec::new();

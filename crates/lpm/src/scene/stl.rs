@@ -9,12 +9,12 @@
 //! ```
 //!
 //! in upper or lower case, with blanks and line ends between words; a name extends to the end of its line. The file
-//! must contain nothing else. A file that was cut off between two of its solids is not detected.
+//! must contain nothing else. The reader does not detect a file that was cut off between two of its solids.
 
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::Mesh;
 
-/// Length of the header of a binary file, bytes: 80 of text and the number of triangles.
+/// Length of the header of a binary file, bytes: 80 of text, and 4 for the number of triangles.
 const HEAD: usize = 84;
 /// Length of one triangle in a binary file, bytes: normal and three corners as f32, and two of attributes.
 const TRIANGLE: usize = 50;
@@ -41,7 +41,7 @@ fn length(count: u32) -> u64 {
     HEAD as u64 + TRIANGLE as u64 * u64::from(count)
 }
 
-/// Returns the error for a file that is not text, for the reason `why`, and not binary either.
+/// Returns the error for a file that is neither text, for the reason `why`, nor binary.
 fn no_stl(why: MeshFault, found: usize, count: Option<u32>) -> MeshFault {
     let text = Box::new(why);
     match count {
@@ -180,7 +180,7 @@ impl<'a> Words<'a> {
         Ok(point)
     }
 
-    /// Skips a name, up to the end of its line; fails on a facet in it, which would mean that a line end was lost.
+    /// Skips a name, up to the end of its line; fails when it contains a facet, which shows that a line end was lost.
     fn name(&mut self) -> Result<(), MeshFault> {
         let name: Vec<&str> = self.words.by_ref().collect();
         let hides = |pair: &[&str]| {

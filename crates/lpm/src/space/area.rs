@@ -3,11 +3,11 @@
 use super::cover::Cover;
 use super::four::Four;
 
-/// Edge of a square of the grid, mm: about the distance between fixture elements. A power of two, so that dividing by
-/// it is exact.
+/// Edge of a square of the grid, mm: about the distance between fixture elements. It is a power of two, so that
+/// dividing by it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
-/// The outermost column and row, 100 km out; farther ones are clamped to it, because no grid reaches as far.
+/// The outermost column and row, 100 km out; farther places are clamped to it, because no grid reaches as far.
 const FARTHEST: f32 = (1 << 21) as f32;
 
 /// First and last column and row of a range of squares, each stored twice, to compare four numbers at once.
@@ -30,10 +30,11 @@ impl Ends {
     };
 }
 
-/// Masks of those of two by two squares that an area has, indexed by its rows less one and its columns less one.
+/// Masks of the squares, of a block of two by two, that an area has; the indices are its rows less one and its columns
+/// less one.
 const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 
-/// Number of cells that the grid grows by around a piece outside it.
+/// Number of cells by which the grid extends beyond a piece outside it.
 pub(super) const GROWTH: i32 = 4;
 
 /// A range of columns and rows of the grid; both ends are included.
@@ -61,9 +62,9 @@ impl Area {
     pub(super) fn among(cover: &Cover, ends: &Ends) -> Area {
         let corners = Four::of(&cover.low).first_two(Four::of(&cover.high));
         let squares = corners.times(Four::all(1.0 / PITCH_MM as f32));
-        // Selects the square with the nearest centre. A bound on a grid line may belong to either side, because covers
-        // are rounded outward and the covered body itself does not lie on their bounds. The same holds for bounds up to
-        // 2e-6 mm below 0. Every step keeps the order, so the area of a cover contains that of every cover inside it.
+        // Selects the square with the nearest centre. A bound on a grid line may go to either side: covers are rounded
+        // outward, so the covered body itself does not reach their bounds. The same holds for bounds up to 2e-6 mm
+        // below 0. Every step keeps the order, so the area of a cover contains that of every cover inside it.
         let middles = squares.minus(Four::all(0.5));
         let within = middles.within(Four::of(&ends.low), Four::of(&ends.high));
         let [left, front, right, back] = within.nearest();
@@ -94,8 +95,8 @@ impl Area {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Returns a mask of those of two by two cells that the area has: bit 0 the first, bit 1 the next column, bit 2 the
-    /// next row.
+    /// Returns a mask of the squares, of a block of two by two, that the area has: bit 0 is the first, bit 1 the next
+    /// column, bit 2 the next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
         let [wide, deep] = [0, 1].map(|axis: usize| (self.high[axis] - self.low[axis]) as usize);

@@ -13,8 +13,8 @@ pub(crate) struct Around<'a> {
     layers: u64,
     /// Next bundle of the current square.
     next: u32,
-    /// First square of the current block, and mask of its squares still to visit (bit 0: the first, bit 1: the next
-    /// column, bit 2: the next row).
+    /// First square of the current block; the next field is the mask of its squares still to visit (bit 0: the first,
+    /// bit 1: the next column, bit 2: the next row).
     first: usize,
     left: u32,
     /// Number of blocks visited so far; `None` when there is only one block.
@@ -53,7 +53,7 @@ impl<'a> Around<'a> {
         self.left = word & block.different();
     }
 
-    /// Returns the cell number of a square of the block.
+    /// Returns the cell number of square `at` of the block, 0 to 3, row by row.
     #[inline(always)]
     fn place(&self, at: u32) -> usize {
         let row = if at < 2 { 0 } else { self.grid.columns };

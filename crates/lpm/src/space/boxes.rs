@@ -1,8 +1,8 @@
 //! Boxes in single precision, stored axis by axis (`low` of x of every box, then of y, ...), so that one instruction
 //! compares four of them.
 //!
-//! Bounds are always rounded outward. Single precision makes boxes larger (by 6e-5 mm at 1 m, 0.06 mm at 1 km), never
-//! unsafe: a rounded box contains the true one, and the exact phase removes pairs that overlap only by rounding.
+//! Bounds are always rounded outward. Single precision makes boxes larger (by 6e-5 mm at 1 m, 0.06 mm at 1 km) but
+//! never unsafe: a rounded box contains the true one, and the exact phase removes pairs that overlap only by rounding.
 
 use super::cover::Cover;
 use super::four::Four;
@@ -20,11 +20,12 @@ pub(crate) struct Boxes<const N: usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Crossing<const N: usize> {
     pub(crate) lanes: u32,
-    /// Fraction of the path before which the box is not met, at most the true one; valid only for boxes that are met.
+    /// Fraction of the path before which the moving box does not meet this box, never later than the true one; valid
+    /// only for lanes in the mask.
     pub(crate) entry: [f32; N],
 }
 
-/// Factor that makes a fraction of the path smaller by more than its four roundings.
+/// Factor that decreases a fraction of the path by more than its four roundings.
 const EARLIER: f32 = 1.0 - 8.0 * f32::EPSILON;
 const LATER: f32 = 1.0 + 8.0 * f32::EPSILON;
 
@@ -68,7 +69,7 @@ impl<const N: usize> Boxes<N> {
         })
     }
 
-    /// Returns, for each box, the fraction of the path before which it is not met along one axis.
+    /// Returns, for each box, the fraction of the path before which `cover` does not meet it along one axis.
     #[inline]
     pub(crate) fn entry(&self, cover: &Cover, pace: &Pace, axis: usize) -> [f32; N] {
         let mut entry = [0.0; N];

@@ -3,12 +3,11 @@
 use super::four::Four;
 use crate::vector::Vec3;
 
-/// Two units in the last place of an f32, relative: more than is lost by rounding to nearest and by one step from
-/// there.
+/// Two units in the last place of an f32, relative: more than rounding to nearest and one further step can lose.
 const ULP: f32 = 2.0 * f32::EPSILON;
 
-/// Relative rounding bound (four units in the last place), and the least normal number, mm, below which an f32
-/// loses digits.
+/// Relative rounding bound (four units in the last place); the next constant is the least normal number, mm, below
+/// which an f32 loses digits.
 const SINGLE: f32 = 4.0 * f32::EPSILON;
 const TINY: f32 = f32::MIN_POSITIVE;
 
@@ -59,7 +58,7 @@ impl Cover {
     pub(crate) fn swept(&self, run: Vec3) -> Cover {
         let (low, high) = (Four::of(&self.low), Four::of(&self.high));
         let (way, rest) = (Four::rounded(&run), Four::all(0.0));
-        // The slack is twice the rounding of the sum, and of the path.
+        // The slack is twice the rounding of the sum and of the path.
         let slack = |bound: Four| {
             let magnitude = bound.abs().plus(way.abs());
             magnitude.times(Four::all(SINGLE)).plus(Four::all(TINY))

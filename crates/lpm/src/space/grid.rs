@@ -1,8 +1,8 @@
 //! The grid `V` of all layers: which pieces stand over which square of the baseplate.
 //!
 //! A cell has one word (bit k: the cell has a piece in layer k) and a chain of bundles of silhouettes. A piece is
-//! entered in every cell that its silhouette touches. Words and chains are stored separately, so a path over empty
-//! squares reads words only.
+//! entered in every cell that its silhouette touches. Words and chains are stored separately, so that a path over empty
+//! squares reads only words.
 
 use super::Seat;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use super::cover::Cover;
 use super::pool::{Cell, Chain, Pool};
 use super::silhouettes::{Bundle, Lane, NONE};
 
-/// Most cells of the grid; pieces farther out are entered in the open cell.
+/// Maximum number of cells of the grid; pieces farther out go into the open cell.
 const MOST_CELLS: i64 = 1 << 18;
 
 /// Cells, one for each square, and the open cell, which holds pieces too large or too far out for squares.
@@ -62,7 +62,7 @@ impl Grid {
         if seat.is_small && self.area.holds(&seat.area) {
             self.each_cell(&seat.area, |pool, cell| known = pool.take(cell, piece));
         }
-        // A piece that was too far out when it was entered is in the open cell, even if the grid has grown since.
+        // A piece that was too far out when it was entered stays in the open cell, even if the grid has grown since.
         if !known {
             self.in_the_open(|pool, cell| {
                 pool.take(cell, piece);
@@ -101,14 +101,14 @@ impl Grid {
         number(self.area.low, self.columns, [column, row])
     }
 
-    /// Returns by how much the cell number grows to the next column (axis 0) or row (axis 1).
+    /// Returns the difference of cell number from one column (axis 0) or row (axis 1) to the next.
     #[inline]
     pub(crate) fn stride(&self, axis: usize) -> usize {
         [1, self.columns][axis]
     }
 
     /// Returns true when one of `steps` + 1 cells in a line may have a piece in one of these layers. Reads up to four
-    /// cells without a branch between them; for more cells it returns true without reading.
+    /// cells without a branch between them; for more cells it returns true without reading any.
     #[inline]
     pub(crate) fn may_have_piece(
         &self,
@@ -225,8 +225,8 @@ impl Grid {
         let mut counts = vec![0u32; self.layers.len()];
         for seat in seats {
             let word = seat.reach.word();
-            // Most pieces cover two by two squares or fewer, in a number that processors predict badly, so the code
-            // counts four, some of them by 0.
+            // Most pieces cover at most two by two squares, in a number that processors predict badly; so the code
+            // always counts four squares, some of them by 0.
             if seat.area.is_few() {
                 let (places, used) = few(self.area.low, self.columns, &seat.area);
                 for (square, place) in places.into_iter().enumerate() {
@@ -261,8 +261,8 @@ fn number(low: [i32; 2], columns: usize, [column, row]: [i32; 2]) -> usize {
     (row - low[1]) as usize * columns + (column - low[0]) as usize
 }
 
-/// Passes the number of each cell of `area`, in a grid that begins at `low`, to `show`. Areas of at most two by two
-/// cells, which most are, avoid nested loops, because processors predict the ends of these badly.
+/// Passes the number of each cell of `area`, in a grid that begins at `low`, to `show`. Most areas have at most two by
+/// two cells; these avoid nested loops, whose ends processors predict badly.
 #[inline(always)]
 fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(usize)) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
@@ -283,8 +283,8 @@ fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(u
     rows(low, columns, area).for_each(|row| row.for_each(&mut show));
 }
 
-/// Returns the numbers of two by two cells, in a grid that begins at `low`, and a mask of those that the area has (bit
-/// k: the one at index k); the others repeat these.
+/// Returns the numbers of a block of two by two cells, in a grid that begins at `low`, and a mask of those that the
+/// area has (bit k: index k); the numbers outside the area repeat others.
 #[inline(always)]
 fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);

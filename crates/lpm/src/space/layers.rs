@@ -1,4 +1,4 @@
-//! Layers: the checking space cut along z; each layer knows how low and how high its pieces really reach.
+//! Layers: the checking space cut along z; each layer knows the actual lowest and highest height of its pieces.
 //!
 //! A layer is `{h1, h2, V, B}`: an interval of height of [`STEP_MM`], the lowest bottom of a piece that lies in it
 //! (`h1`) and the highest top (`h2`). A piece belongs to every layer into which it reaches, but no layer has a copy of
@@ -15,15 +15,15 @@ use super::four::Four;
 /// Number of layers: one for each bit of a word.
 const LAYERS: usize = 64;
 
-/// Most layers that a usual piece has between its lowest and its highest; few pieces have more.
+/// Greatest number of layers strictly between the lowest and the highest layer of a usual piece; few pieces have more.
 const SHORT: usize = 8;
 
 /// Height of a layer, mm: a third of the lowest elements of a fixture, so that a gripper which passes over them shares
 /// no layer with them.
 const STEP_MM: f32 = 8.0;
 
-/// Number of layers below the top of the baseplate, less the half that rounding to nearest adds. Anything lower belongs
-/// to the lowest layer, anything above all layers (440 mm) to the highest one.
+/// Number of layers below the top of the baseplate, less the half that rounding to nearest adds. A lower piece belongs
+/// to the lowest layer, a piece above all layers (440 mm) to the highest one.
 const STEPS_BELOW: f32 = 7.5;
 
 /// The lowest and the highest layer into which a piece reaches.
@@ -46,7 +46,7 @@ impl Reach {
         let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);
         let steps = heights.times(Four::all(1.0 / STEP_MM));
         let steps = steps.plus(Four::all(STEPS_BELOW));
-        // Every step keeps the order of heights, so two ranges of heights that overlap always share a layer.
+        // Every step keeps the order of heights, so that two overlapping ranges of heights always share a layer.
         let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
         let [low, high, ..] = within.nearest();
         Reach {
@@ -68,12 +68,12 @@ impl Reach {
 /// Counts and heights of all layers, and Omega.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    /// Number of pieces that pass through each layer; `beginning` and `ending` count the pieces that begin or end in
-    /// it.
+    /// Number of pieces that pass through each layer; the next two fields count the pieces that begin and end in it.
     passing: [u32; LAYERS + SHORT],
     beginning: [u32; LAYERS],
     ending: [u32; LAYERS],
-    /// Lowest bottom of the pieces that begin in each layer, and highest top of those that end in it, mm.
+    /// Lowest bottom of the pieces that begin in each layer; the next field is the highest top of those that end in it,
+    /// mm.
     h1: [f32; LAYERS],
     h2: [f32; LAYERS],
     /// Bottom and top of Omega, mm.
@@ -109,8 +109,8 @@ impl Layers {
         }
         layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
         layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
-        // A piece passes a layer when it begins below the layer and ends above it. Pieces of one layer only are left
-        // out, so that none ends before it begins.
+        // A piece passes a layer when it begins below the layer and ends above it. The count leaves out pieces within
+        // one layer, so that none ends before it begins.
         let (mut begun, mut ended) = (0, 0);
         for (layer, within) in within.into_iter().enumerate() {
             ended += layers.ending[layer] - within;
@@ -120,7 +120,7 @@ impl Layers {
         layers
     }
 
-    /// Adds a piece, which reaches from one height to another (mm).
+    /// Adds a piece that extends between two heights, mm.
     #[inline]
     pub(crate) fn join(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
         self.enclose(reach, bottom_mm, top_mm);
@@ -146,8 +146,8 @@ impl Layers {
         let between = usize::from(reach.high).saturating_sub(first);
         let passed = &mut self.passing[first..];
         match passed.first_chunk_mut::<SHORT>() {
-            // The number of layers is unpredictable, so the loop always writes `SHORT` counts; most of them stay
-            // unchanged.
+            // The number of layers is unpredictable, so the loop always writes `SHORT` counts; most of them do not
+            // change.
             Some(few) if between <= SHORT => {
                 for (at, count) in few.iter_mut().enumerate() {
                     *count = count.wrapping_add(if at < between { more } else { 0 });
@@ -190,8 +190,8 @@ impl Layers {
         Reach::of(low, high).word()
     }
 
-    /// Returns [`Layers::between`] without the lowest and the highest of these layers where no piece reaches into these
-    /// heights. For paths over many squares this is worth its cost.
+    /// Returns [`Layers::between`], without its lowest and highest layer where the pieces of that layer do not reach
+    /// into these heights. For paths over many squares this is worth its cost.
     #[inline]
     pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
         let reach = Reach::of(low, high);
@@ -199,7 +199,8 @@ impl Layers {
         self.between(low, high) & !outermost
     }
 
-    /// Returns the bit of a layer if `low..=high` lies strictly between the tops and the bottoms of its pieces; else 0.
+    /// Returns the bit of a layer if `low..=high` lies strictly between the tops of its lower pieces and the bottoms of
+    /// its upper ones; otherwise 0.
     #[inline]
     fn void(&self, layer: u8, low: f32, high: f32) -> u64 {
         let layer = usize::from(layer) % LAYERS;

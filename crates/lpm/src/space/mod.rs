@@ -1,10 +1,10 @@
 //! The checking space Omega over the baseplate: the broad phase of the layer-based projection model.
 //!
-//! Three tests follow each other, and each may end the check. All of them compare boxes that were rounded outward, so
-//! no piece is lost:
+//! Three tests follow each other, and each may end the check. All of them compare boxes that are rounded outward, so
+//! that no piece gets lost:
 //! 1. Does the swept mover reach into the height of Omega, and into which layers? ([`layers`])
-//! 2. Which squares of the baseplate does it pass, and has one of them a piece in these layers? One word per square
-//!    tells ([`grid`]).
+//! 2. Which squares of the baseplate does it pass, and does one of them have a piece in these layers? One word per
+//!    square tells ([`grid`]).
 //! 3. Do the silhouettes overlap while the mover passes? Eight are tested at a time ([`silhouettes`], [`boxes`]).
 //!
 //! The pairs that remain go to the exact phase, which tests separating planes and the shapes themselves. Squares are
@@ -37,7 +37,7 @@ use grid::Grid;
 use layers::{Layers, Reach};
 use walk::Walk;
 
-/// Most cells in which a piece is entered; larger pieces, such as the baseplate, are entered in the open cell.
+/// Maximum number of cells in which a piece is entered; larger pieces, such as the baseplate, go into the open cell.
 const MOST_CELLS_OF_A_PIECE: i64 = 128;
 
 /// All stationary pieces, as the broad phase sees them: by their silhouettes.
@@ -94,7 +94,7 @@ impl Space {
 pub(crate) struct Seat {
     area: Area,
     reach: Reach,
-    /// True when it covers few enough squares to be entered in each.
+    /// True when the piece covers few enough squares to be entered in each of them.
     is_small: bool,
 }
 
@@ -112,7 +112,7 @@ impl Seat {
 
 /// A collection into which pieces are entered by the boxes that cover them.
 pub(crate) trait Entering {
-    /// Enters the piece with this number: the number of a removed piece, or the next new one.
+    /// Enters the piece with this number, which is that of a removed piece or the next new one.
     fn enter(&mut self, piece: u32, cover: &Cover);
 }
 
@@ -129,8 +129,8 @@ impl Entering for Space {
     }
 }
 
-/// Pieces from which a space is built once all are known. Each step then runs over all pieces before the next step
-/// begins: all steps for one piece in a row would form a long chain of dependencies, which stalls the processor.
+/// Pieces from which a space is built at once. Each step runs over all pieces before the next step begins: all steps
+/// for one piece in a row would form a long chain of dependencies, which stalls the processor.
 #[derive(Debug, Default)]
 pub(crate) struct Filling {
     covers: Vec<Cover>,

@@ -2,7 +2,7 @@
 
 use super::silhouettes::{Bundle, LANES, Lane, NONE};
 
-/// A cell: the layers in which it has pieces (bit k: layer k), and its newest bundle, the only one that may be partly
+/// A cell: its word (bit k: the cell has pieces in layer k), and its newest bundle, the only one that may be partly
 /// filled.
 pub(super) struct Cell<'a> {
     pub(super) layers: &'a mut u64,
@@ -30,7 +30,7 @@ impl Pool {
         *cell.layers |= lane.reach.word();
     }
 
-    /// Returns the number of an empty bundle that comes before `next` in its chain.
+    /// Returns the number of an empty bundle, linked before the bundle `next`.
     fn fresh(&mut self, next: u32) -> u32 {
         match self.spare.pop() {
             Some(spare) => {

@@ -37,16 +37,16 @@ impl Lane {
 pub(crate) struct Bundle {
     boxes: Boxes<LANES>,
     pieces: [u32; LANES],
-    /// The lowest and the highest layer of each piece.
+    /// Number of the lowest layer of each piece; the next field has the highest.
     lowest: [u8; LANES],
     highest: [u8; LANES],
     count: u32,
-    /// Next bundle of the same cell, which is always full; [`NONE`] at the end.
+    /// Next bundle of the same cell, which is always full; [`NONE`] after the last one.
     pub(super) next: u32,
 }
 
 impl Bundle {
-    /// Returns an empty bundle that comes before `next` in its cell.
+    /// Returns an empty bundle, linked before the bundle `next` of its cell.
     #[inline]
     pub(super) fn before(next: u32) -> Bundle {
         Bundle {
@@ -74,7 +74,7 @@ impl Bundle {
         self.set(self.last(), lane);
     }
 
-    /// Counts `count` lanes as in use; [`Bundle::set`] will fill them.
+    /// Marks `count` lanes as in use; [`Bundle::set`] fills them later.
     #[inline]
     pub(super) fn expect(&mut self, count: u32) {
         self.count = count;
@@ -115,7 +115,7 @@ impl Bundle {
         (self.count as usize).wrapping_sub(1) % LANES
     }
 
-    /// Returns the lane of a piece. Looks at the newest lane first, because parts that pass through a fixture leave it
+    /// Returns the lane of a piece. Searches from the newest lane, because parts that pass through a fixture leave it
     /// before its own elements do.
     #[inline]
     pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
@@ -129,9 +129,9 @@ impl Bundle {
         (word != 0).then(|| word.trailing_zeros() as usize % LANES)
     }
 
-    /// Returns the word of the layers from the lowest to the highest of this bundle; leaves the lane `gone` out.
+    /// Returns the word of all layers in which this bundle has pieces, without the lane `gone`.
     ///
-    /// Call this before the lane is removed: reading eight bytes at once stalls the processor right after they were
+    /// Call this before removing the lane: a read of eight bytes at once stalls the processor right after they were
     /// written one by one.
     #[inline]
     pub(super) fn word_without(&self, gone: Option<usize>) -> u64 {
@@ -164,14 +164,15 @@ impl Bundle {
     }
 
     /// Returns a mask of the silhouettes that a moving box meets up to the fraction `until` of its path, and for each
-    /// the fraction before which it is not met.
+    /// of them the fraction before which the box does not meet it.
     #[inline(always)]
     pub(super) fn crossing(&self, sweep: &Sweep, until: f32) -> (u32, [f32; LANES]) {
         let crossing = self.boxes.crossing(&sweep.start, &sweep.pace, until);
         (crossing.lanes & self.used(), crossing.entry)
     }
 
-    /// Returns, for each silhouette, the fraction of the path before which it is not met along one axis.
+    /// Returns, for each silhouette, the fraction of the path before which the moving box does not meet it along one
+    /// axis.
     #[inline]
     pub(super) fn entry(&self, sweep: &Sweep, axis: usize) -> [f32; LANES] {
         self.boxes.entry(&sweep.start, &sweep.pace, axis)

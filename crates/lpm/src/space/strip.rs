@@ -1,9 +1,9 @@
-//! The squares that a moving box passes, band by band; a band is a row or column across its path, and the squares lie
-//! between two lines.
+//! The squares that a moving box passes, band by band. A band is a row or column across the path; in each band the box
+//! passes the squares between two lines.
 //!
-//! Both lines are tracked in units of 2^-32 squares. The rounding to units, at most one per band, is added to the width
-//! in advance, so the strip contains every square that the box passes. Where the box starts and ends within a band is
-//! ignored: too many squares are safe.
+//! Both lines are tracked in units of 2^-32 squares. The width includes a reserve for the rounding to units, at most
+//! one per band, so that the strip contains every square that the box passes. It ignores where within a band the box
+//! starts and ends: too many squares are safe.
 
 use super::area::{Area, PITCH_MM};
 use super::sweep::{SLACK_MM, Sweep};
@@ -12,7 +12,7 @@ use super::sweep::{SLACK_MM, Sweep};
 const UNIT: f64 = (1u64 << UNIT_BITS) as f64;
 const UNIT_BITS: u32 = 32;
 
-/// Number of squares that stands for infinity: farther than any grid, or any line within it, reaches.
+/// Number of squares that stands for infinity: no grid, and no line within a grid, reaches as far.
 const BEYOND: f64 = (1 << 28) as f64;
 
 /// The bands of an area, in the order of the path. The box moves farther across the bands than along them.
@@ -24,14 +24,15 @@ pub(super) struct Strip {
     towards: i32,
     /// Number of the last band.
     last: i32,
-    /// Positions of both lines over the next band, from the first row or column of the area, and how much they advance
-    /// per band; all in units.
+    /// Position of the lower line over the next band, from the first row or column of the area; the next two fields are
+    /// that of the upper line, and the advance of both per band. All are in units.
     low: i64,
     high: i64,
     slope: i64,
     /// Last row or column of the area.
     width: i32,
-    /// Length of the path until the box reaches the first band, and of the whole path; both in bands.
+    /// Length of the path until the box reaches the first band; the next field is the length of the whole path. Both
+    /// are in bands.
     ahead: f64,
     run: f64,
 }
@@ -88,15 +89,15 @@ impl Strip {
         let bands = self.run * until - self.ahead;
         // NaN means all bands.
         if bands < f64::from(self.last) {
-            // The cast truncates towards 0; that rounds down the non-negative numbers, which alone matter.
+            // The cast truncates towards 0, which rounds non-negative numbers down; only these matter.
             if bands < 0.0 { -1 } else { bands as i32 }
         } else {
             self.last
         }
     }
 
-    /// Returns the next band, with the first and the last square in it that the box may pass; none when last comes
-    /// before first.
+    /// Returns the next band, with the first and the last square in it that the box may pass; the last comes before the
+    /// first when there is none.
     #[inline(always)]
     pub(super) fn next(&mut self) -> (i32, i32, i32) {
         let square = |units: i64| (units >> UNIT_BITS) as i32;

@@ -3,12 +3,12 @@
 use super::cover::Cover;
 use crate::vector::Vec3;
 
-/// Slack of a place along the path, mm. It has a wide reserve over the rounding of slopes and products (at most 2e-9 mm
-/// within 3e6 mm), and over what [`Area`](super::area::Area) loses next to 0 when it subtracts half a square (at most
-/// 2e-6 mm).
+/// Slack of a place along the path, mm. It leaves an ample reserve over the rounding of slopes and products (at most
+/// 2e-9 mm within 3e6 mm), and over the loss next to 0 when [`Area`](super::area::Area) subtracts half a square (at
+/// most 2e-6 mm).
 pub(crate) const SLACK_MM: f64 = 1e-5;
 
-/// A displacement along an axis below this counts as rest, mm; every moving box is widened by as much.
+/// Displacement along an axis below which the box counts as at rest there, mm; every moving box is widened by as much.
 pub(crate) const SLOWEST_MM: f64 = 1e-9;
 
 /// Fraction of the path per millimetre along each axis; infinite for an axis at rest.
@@ -29,7 +29,7 @@ impl Pace {
         Pace([of(run[0]), of(run[1]), of(run[2])])
     }
 
-    /// Returns the pace at which the surroundings move in the frame of the box.
+    /// Returns the pace of the surroundings as seen from the box.
     #[inline]
     pub(crate) fn reversed(self) -> Pace {
         let [x, y, z] = self.0;

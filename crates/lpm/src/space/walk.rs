@@ -1,4 +1,4 @@
-//! Walks along the path of a box over the squares of the baseplate, in the direction of motion.
+//! Walks over the squares of the baseplate along the path of a box, in the direction of motion.
 
 use super::area::Area;
 use super::cover::{Cover, above};
@@ -13,13 +13,13 @@ pub(crate) trait Visit {
     /// Returns true when the visitor needs the pieces in the order in which they are met.
     fn in_order(&self) -> bool;
 
-    /// Receives a bundle with its number. The box may meet lane k if bit k of `lanes` is set; if `in_order`, it does
-    /// not meet it before the fraction `entry[k]` of the path. The same piece may come more than once. Returns true to
-    /// end the walk.
+    /// Receives a bundle with its number. The box may meet lane k if bit k of `lanes` is set; with [`Visit::in_order`],
+    /// `entry[k]` is the fraction of the path before which it does not meet lane k. The same piece may come more than
+    /// once. Returns true to end the walk.
     fn bundle(&mut self, shown: (u32, &Bundle), lanes: u32, entry: &[f32; LANES]) -> bool;
 
-    /// Called when all pieces still to come are met no earlier than those that came since the last pause. Returns the
-    /// fraction of the path up to which pieces still matter; below 0 to end the walk.
+    /// The walk calls this when the box meets no piece still to come earlier than those that came since the last pause.
+    /// Returns the fraction of the path up to which pieces still matter; below 0 to end the walk.
     fn pause(&mut self) -> f64;
 }
 
@@ -88,7 +88,7 @@ impl<'a, V: Visit> Walk<'a, V> {
         let (sweep, until) = (self.sweep, above(self.until));
         let in_order = self.visit.in_order();
         for (number, bundle) in chain {
-            // A piece may overlap the box around a slanted path, and yet the moving box never meets it.
+            // A piece may overlap the box around a slanted path although the moving box never meets it.
             let (lanes, entry) = if self.is_slanted {
                 bundle.crossing(sweep, until)
             } else {

@@ -32,7 +32,8 @@ pub struct CalibrationFacts {
     pub is_simulated: bool,
     /// Nominal voltage of the parts for which the calibration holds, V.
     pub nominal_v: f64,
-    /// Factor of the supply range in which the calibration was made.
+    /// Voltage factor of the supply range in which the calibration was made, see
+    /// [`crate::rig::supply::SupplyRange::factor`].
     pub range_factor: f64,
     /// True when the calibration has every factor that its kind of device needs, those from reference parts included.
     pub is_complete: bool,

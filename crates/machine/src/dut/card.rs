@@ -19,7 +19,7 @@ pub struct Card {
     pub rating: (TextId, Vec<Piece>),
     /// What is done to a part, in order.
     pub steps: Vec<Step>,
-    /// Counts that the remarks on the card mention, each with the text of its remark.
+    /// Counts that the remarks on the card state, each with the id of the remark's text.
     pub counts: Vec<(TextId, u32)>,
 }
 
@@ -31,7 +31,7 @@ pub struct Step {
     /// Id of the step's text, which has three attributes: `.what` (the action), `.tooling`, and `.requirement` (on
     /// sensors).
     pub text: TextId,
-    /// Drive of the part during the step; empty where it is not driven.
+    /// What drives the part during the step; empty where nothing does.
     pub drive: Vec<Piece>,
     /// Requirement on the outcome of the step.
     pub demand: Demand,

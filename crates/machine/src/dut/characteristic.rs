@@ -21,14 +21,14 @@ pub struct Definition {
     pub key: &'static str,
     /// Unit in which values and limits are written.
     pub unit: Unit,
-    /// Quantity that the mean of several readings estimates.
+    /// What the mean of several readings stands for.
     pub mean_of: MeanOf,
     /// Bin for a part that fails this characteristic.
     pub bin: Bin,
 }
 
 /// A characteristic of one kind of device. The default methods suit a characteristic that does not depend on
-/// temperature and for which stored curves give no lower bound.
+/// temperature and has no lower bound in stored curves.
 pub trait KindCharacteristic {
     /// Returns the constant data of the characteristic.
     fn definition(&self) -> &'static Definition;
@@ -38,8 +38,8 @@ pub trait KindCharacteristic {
         1.0
     }
 
-    /// Returns the lower bound, in the unit of the key, that stored curves prove for a part without a measured value,
-    /// less a margin for effects that the curves are not corrected for. `_rated_v`: nominal voltage of the part, V.
+    /// Returns the lower bound that stored curves prove for a part without a measured value, in the unit of the key,
+    /// less a margin for effects for which the curves are not corrected. `_rated_v`: nominal voltage of the part, V.
     fn lower_bound(&self, _curves: &[Curve], _rated_v: Option<f64>) -> Option<f64> {
         None
     }
@@ -60,7 +60,7 @@ impl Characteristic {
         Kind::ALL.into_iter().flat_map(Kind::characteristics)
     }
 
-    /// Returns the characteristic with this key; none when no kind has it.
+    /// Returns the characteristic with this key; `None` when no kind has it.
     pub fn from_key(key: &str) -> Option<Self> {
         Self::all().find(|it| it.key() == key)
     }

@@ -1,4 +1,5 @@
-//! Kind of device under test, as the station holds it: recipe, calibration, and what it has learned from earlier parts.
+//! A kind of device under test on a rig, as the station holds it: recipe, calibration, and what it has learned from
+//! earlier parts.
 
 use super::accuracy::AccuracySettings;
 use super::calibration::Calibration;
@@ -16,7 +17,7 @@ use texts::Message;
 use thiserror::Error;
 use units::{Ohm, RigTime};
 
-/// When a calibration is made and how long it holds.
+/// Time at which a calibration is made, and how long it is valid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Made {
     /// Microseconds since 1970 UTC.
@@ -40,13 +41,14 @@ pub struct Rig<'a> {
     pub reference_parts: &'a ReferenceSet,
 }
 
-/// How a part is to be tested.
+/// Which part is tested, and how.
 #[derive(Debug, Clone, Copy)]
 pub struct TestOrder<'a> {
-    /// True when confirmation measurements must give every result: for a first article, or a check against a
-    /// certificate.
+    /// True when the test must repeat every measurement to confirm its result: for a first article, or for a check
+    /// against a certificate.
     pub thorough: bool,
-    /// Serial number of the part in the nest while the rig learns from reference parts; none in any other test.
+    /// Serial number of the reference part in the nest while the rig learns from reference parts; `None` in any other
+    /// test.
     pub teaching: Option<&'a str>,
     /// How often this part has been tested, including this test, from 1.
     pub number: u8,
@@ -64,7 +66,7 @@ pub enum CalibrationFault {
 }
 
 impl CalibrationFault {
-    /// Returns the fault as a text of the family `fault`, with its figures.
+    /// Returns the fault as a message of family `fault`, with its figures.
     pub fn message(&self) -> Message {
         match self {
             Self::Reference(fault) => fault.message(),
@@ -76,10 +78,11 @@ impl CalibrationFault {
 /// A kind of device on a rig: recipe, calibration and what it has learned from parts. The default methods are those of
 /// a kind that needs no calibration and learns nothing.
 pub trait DeviceUnderTest {
-    /// Begins the test of the part in the nest; the probes are up.
+    /// Begins the test of the part in the nest. The probes must be up.
     fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure;
 
-    /// Returns when the factors in force expire, microseconds since 1970 UTC; none without calibration.
+    /// Returns when the calibration in force expires, microseconds since 1970 UTC; `None` for a kind without
+    /// calibration.
     fn due_at_us(&self) -> Option<i64> {
         None
     }
@@ -89,12 +92,12 @@ pub trait DeviceUnderTest {
         Vec::new()
     }
 
-    /// Returns true when parts may be judged.
+    /// Returns true when the calibration is complete, so that parts may be judged.
     fn is_calibrated(&self) -> bool {
         true
     }
 
-    /// Returns the acts that measure the references on the board, in the empty nest with the probes up.
+    /// Returns the acts that measure the references on the board; they need an empty nest with the probes up.
     fn reference_acts(&self) -> Vec<Act> {
         Vec::new()
     }
@@ -114,7 +117,7 @@ pub trait DeviceUnderTest {
     /// Discards the calibration, so that references and reference parts have to be measured again.
     fn forget_calibration(&mut self) {}
 
-    /// Learns from a reference part. After the part marked `_last` the calibration is complete and returned.
+    /// Learns from a reference part. After the part marked `_last`, completes and returns the calibration.
     ///
     /// # Errors
     /// Fails when the part cannot be used, or with the part that does not fit the others.
@@ -127,7 +130,7 @@ pub trait DeviceUnderTest {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Completes the calibration with the reference parts measured so far, when the measurement of the last one was
+    /// Completes the calibration with the reference parts measured so far, because the measurement of the last one was
     /// interrupted.
     ///
     /// # Errors
@@ -136,7 +139,7 @@ pub trait DeviceUnderTest {
         panic!("{NO_REFERENCE_PARTS}")
     }
 
-    /// Learns from a part of the lot; `_pass` tells whether it passed.
+    /// Learns from a part of the lot; `_pass` is true when the part passed.
     fn learn(&mut self, _record: &TestRecord, _pass: bool) {}
 
     /// Compares the results of a reference part with its certificate.
@@ -147,19 +150,19 @@ pub trait DeviceUnderTest {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Returns the accuracies promised by `rig.toml` and the recipe that measurements have disproved since the last
-    /// call.
+    /// Returns the standard deviations promised by `rig.toml` or the recipe that measurements have disproved since the
+    /// last call.
     fn broken_promises(&mut self) -> Vec<Broken> {
         Vec::new()
     }
 
-    /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot; none before
-    /// the first part.
+    /// Returns the resistance of the probes in series with the part, as the mean over the last parts of the lot; `None`
+    /// before the first part.
     fn probe_contact(&self) -> Option<Ohm> {
         None
     }
 
-    /// Returns [`Self::probe_contact`] once it is the mean of enough parts to raise an alarm on it.
+    /// Returns [`Self::probe_contact`] once it is the mean of enough parts that an alarm may depend on it.
     fn settled_probe_contact(&self) -> Option<Ohm> {
         None
     }

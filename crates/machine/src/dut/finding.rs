@@ -10,7 +10,7 @@ use crate::gauge::Side;
 pub struct Entry {
     /// Code in rows and exports.
     pub code: &'static str,
-    /// Bin of a bad part; none for a part that cannot be judged.
+    /// Bin of a bad part; `None` for a part that cannot be judged.
     pub bin: Option<Bin>,
     /// Characteristic and side of the limit that the finding proves exceeded, if it proves one.
     pub proves: Option<(Characteristic, Side)>,

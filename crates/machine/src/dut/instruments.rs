@@ -1,4 +1,4 @@
-//! Factors of a calibration and certificates of reference parts, for people to read; in one form for every kind.
+//! Factors of a calibration and certificates of reference parts as people read them, in one form for every kind.
 
 use super::calibration::Calibration;
 use super::characteristic::Characteristic;
@@ -10,7 +10,7 @@ use crate::gauge::factor::Named;
 pub struct Certificate {
     /// Serial number.
     pub serial: String,
-    /// Nominal voltage of the recipes for which the part serves, V.
+    /// Nominal voltage of the recipes for which the part is a reference, V.
     pub nominal_v: f64,
     /// Every certified quantity, in the unit of its key.
     pub values: Vec<(Characteristic, Certified)>,
@@ -27,8 +27,8 @@ impl From<&ReferencePart> for Certificate {
     }
 }
 
-/// Returns every factor of a stored calibration; none when another program wrote it in a form that this one does not
-/// read.
+/// Returns every factor of a stored calibration; empty when the calibration has a form that this version of the program
+/// cannot read.
 pub fn factors(calibration: serde_json::Value) -> Vec<Named> {
     let read = serde_json::from_value::<Calibration>(calibration);
     read.map_or_else(|_| Vec::new(), |it| it.facts().factors)

@@ -1,8 +1,8 @@
-//! Keys of a recipe: those that a kind of device adds, and those that several kinds have in common.
+//! Keys of a recipe: the form of those that a kind of device adds, and those that several kinds have in common.
 
 use crate::form::{Form, Key, Range, from_to, key};
 
-/// Keys that three sections of a recipe may have for one kind.
+/// Keys that one kind of device may have in three sections of its recipe.
 #[derive(Debug, Clone, Copy)]
 pub struct Sections {
     /// Keys of `[part]`.
@@ -44,7 +44,7 @@ pub const REFERENCE_TEMPERATURE: Key = key(
     "temperature that results are converted to",
 );
 
-/// Form of a limit: `low` and `high`, each from 0 to `$high` in `$unit`; a recipe may leave out either.
+/// Form of a limit: a table with `low` and `high`, each from 0 to `$high` in `$unit`; a recipe may omit either.
 macro_rules! limit {
     ($unit:literal, $high:literal) => {
         crate::form::Form::Table(&[

@@ -1,11 +1,12 @@
-//! Made-up parts of a kind, for trying out a history: the scatter of their values, and the signals that a test records.
+//! Made-up parts of a kind, for trying out a history without a rig: the scatter of their values, and the signals that a
+//! test records.
 
 use super::Characteristic;
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
 
-/// Statistics of made-up parts of a recipe; a mean that the recipe does not state is that of the default simulated
-/// world.
+/// Statistics of the made-up parts of a recipe. A mean that the recipe does not state is that of the default simulated
+/// rig.
 #[derive(Debug, Clone)]
 pub struct MadeUp {
     /// Scatter of each characteristic, in the order of reports.

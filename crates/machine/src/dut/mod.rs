@@ -1,7 +1,7 @@
 //! Devices under test: what a part is, how it is measured and judged.
 //!
-//! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`],
-//! [`Reason`] and [`Verdict`], never a kind.
+//! A kind of device is one folder. The rest of the program uses [`Recipe`], [`Characteristic`], [`Judgement`],
+//! [`Reason`] and [`Verdict`], and names no kind.
 
 pub mod accuracy;
 pub mod calibration;
@@ -40,13 +40,13 @@ use crate::rig::wiring::Wiring;
 /// The fixture points that each kind declares.
 pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE];
 
-/// Returns the inputs that converters read while the references of any kind are measured. When the controller was cut
-/// off during that measurement, the channel mask of these inputs is still in the module.
+/// Returns the inputs that converters read while the references of any kind are measured. If the controller was cut off
+/// during that measurement, the channel mask of these inputs is still in their modules.
 pub fn reference_inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     em_relay::reference::inputs(wiring)
 }
 
-/// Returns the meaning of the bits of a stored signal, highest first; none for any other signal.
+/// Returns the meaning of the bits of a stored signal, highest first; `None` for any other signal.
 pub fn bits_of(signal: &str) -> Option<&'static str> {
     (signal == em_relay::points::BOARD).then_some(em_relay::points::BOARD_BITS)
 }
@@ -56,7 +56,7 @@ pub fn bits_of(signal: &str) -> Option<&'static str> {
 pub enum Kind {
     /// Electromagnetic relay: coil, armature, changeover contact.
     EmRelay,
-    /// One resistor in a relay-size body: a fixture check.
+    /// One resistor in a body of relay size, which checks the fixture.
     Resistor,
 }
 

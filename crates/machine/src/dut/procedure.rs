@@ -21,12 +21,13 @@ pub enum Progress {
     Judged,
 }
 
-/// Longest time of the stages that measure; confirmation measurements take below 10 s.
+/// Longest time of the stages that measure; confirmation measurements take less than 10 s.
 pub const MEASURING: Span = Span::ms(60_000);
 
 /// A test under way.
 pub trait TestProcedure {
-    /// Advances the test as far as it can. `done` answers the job of the step before; the caller passes it once.
+    /// Advances the test as far as it can. `done` is the outcome of the job that an earlier step requested; the caller
+    /// passes it once.
     fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress;
 
     /// Returns the kind of the part.
@@ -38,7 +39,7 @@ pub trait TestProcedure {
     /// Returns the name of the stage under way.
     fn stage(&self) -> &'static str;
 
-    /// Returns why the test ends before its last stage; none while nothing stops it.
+    /// Returns why the test ends before its last stage; `None` while it does not.
     fn why_stopped(&self) -> Option<&Stop>;
 
     /// Judges each result against its limit.
@@ -50,12 +51,13 @@ pub trait TestProcedure {
     /// Hands over the record, once the part is judged.
     fn take_record(&mut self) -> TestRecord;
 
-    /// Returns the longest time of the test; one that takes longer is stuck.
+    /// Returns the longest time that the test may take; a longer test counts as stuck.
     fn longest(&self) -> Span {
         MEASURING
     }
 
-    /// Returns why the part cannot be judged: the rig was in trouble, or the test could not measure the part.
+    /// Returns why the part cannot be judged (the rig was in trouble, or the test could not measure the part); `None`
+    /// for any other part.
     fn why_void(&self) -> Option<&Reason> {
         match self.why_stopped()? {
             Stop::Void(why) | Stop::Trouble(why) => Some(why),
@@ -63,8 +65,8 @@ pub trait TestProcedure {
         }
     }
 
-    /// Returns the selected supply range and the one that was read back, once they differ: trouble of the rig, not of
-    /// the part.
+    /// Returns the selected supply range and the range that was read back, once they differ. This is trouble of the
+    /// rig, not of the part.
     fn range_mismatch(&self) -> Option<&RangeMismatch>;
 
     /// Returns the verdict of the part.

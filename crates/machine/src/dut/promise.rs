@@ -1,4 +1,5 @@
-//! Promises of `config/rig.toml` and of a recipe that a rig disproves while it measures.
+//! Promises: standard deviations that `config/rig.toml` or a recipe states, and that a kind of device checks while it
+//! measures.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +31,7 @@ impl Promise {
     }
 }
 
-/// A promise that does not hold, with the standard deviations in the unit of its key.
+/// A promise that measurements have disproved, with the standard deviations in the unit of its key.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Broken {
     /// Promise that does not hold.
@@ -41,8 +42,8 @@ pub struct Broken {
     pub seen: f64,
     /// Ends of the 95 % interval of `seen`.
     pub interval: (f64, f64),
-    /// Degrees of freedom of `seen`.
+    /// Degrees of freedom of the estimate `seen`.
     pub freedom: f64,
-    /// Value that budgets use from now on: `seen`, widened by Student's t.
+    /// Standard deviation that budgets use from now on: `seen`, widened by Student's t.
     pub used: f64,
 }

@@ -1,4 +1,4 @@
-//! Prompts of a recipe or of `lot.toml`: what a person must do and answer before the lot goes on.
+//! Prompts of a recipe or of `lot.toml`: what a person must do and answer before the lot continues.
 
 use crate::rig::fault::Fault;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ pub enum PromptMoment {
 /// A prompt.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Prompt {
-    /// Name in orders and in the record; each prompt of a lot has its own.
+    /// Name in orders and in the record, unique within a lot.
     pub name: String,
     /// Instant at which it opens.
     pub when: PromptMoment,
@@ -29,7 +29,7 @@ pub struct Prompt {
     pub text_en: String,
     /// Request in Chinese.
     pub text_zh: String,
-    /// File in `config/pictures`.
+    /// File in `config/pictures` that shows what to do; `None` without a picture.
     pub picture: Option<String>,
     /// Answers, at least one.
     pub choices: Vec<Choice>,
@@ -38,7 +38,7 @@ pub struct Prompt {
 /// An answer to a prompt.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Choice {
-    /// Name in orders and in the record.
+    /// Name in orders and in the record, unique within the prompt.
     pub name: String,
     /// Label in English.
     pub text_en: String,
@@ -56,8 +56,8 @@ impl Prompt {
     }
 }
 
-/// Checks that prompts and the choices of each have names of their own, and that each prompt has a choice with which
-/// the lot goes on.
+/// Checks that the names of prompts are unique, as are those of the choices of each, and that each prompt has a choice
+/// with which the lot continues.
 ///
 /// # Errors
 /// Fails with the first key that breaks a rule.

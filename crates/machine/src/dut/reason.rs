@@ -34,8 +34,8 @@ pub enum Code {
     NotProven(Characteristic),
     /// No usable value.
     NotMeasured(Characteristic),
-    /// The sequence was cut off; the detail is the code of an alarm or of an order, which has a text in the family
-    /// `interruption`.
+    /// The handling or the test of the part was cut off. The detail is the code of an alarm or of an order, which has a
+    /// text in the family `interruption`.
     Interrupted,
     /// A line or module failed in the middle of the test; detail: which, and how.
     RigTrouble,
@@ -43,7 +43,7 @@ pub enum Code {
     Serial(SerialFault),
     /// Finding of a test of one kind.
     Finding(Finding),
-    /// A text that has no code, because it is imported or written by a version with other codes; the detail is the
+    /// A text that has no code, because it was imported or written by a version with other codes. The detail is the
     /// text.
     Unclassified,
 }
@@ -57,7 +57,7 @@ pub struct Reason {
     pub side: Option<Side>,
     /// What the text adds to the code: a figure, a pin, a module; may be empty.
     pub detail: String,
-    /// Message of [`Code::RigTrouble`], which has `detail` as English text; `None` for a reason that a history stored.
+    /// Message of [`Code::RigTrouble`], whose English text is `detail`; `None` for a reason read from a history.
     pub trouble: Option<Box<Message>>,
 }
 
@@ -92,7 +92,7 @@ impl Reason {
         }
     }
 
-    /// Returns the reason for a sequence that `why` cut off.
+    /// Returns the reason for a part whose handling or test was cut off by `why`, the code of an alarm or an order.
     pub fn interrupted(why: &str) -> Self {
         Self::detailed(Code::Interrupted, why)
     }
@@ -144,8 +144,8 @@ impl Reason {
         }
     }
 
-    /// Returns the reason that a history stores under this name of its code; none when no code has the name, or when
-    /// the code needs a characteristic and none is given.
+    /// Returns the reason that a history stores under this code name; `None` for an unknown name, or when the code
+    /// needs a characteristic and none is given.
     pub fn stored(
         code: &str,
         characteristic: Option<Characteristic>,
@@ -169,7 +169,7 @@ impl Reason {
         found.unwrap_or_else(|| Self::unclassified(text))
     }
 
-    /// Returns every reason that concerns the characteristic whose key begins the text.
+    /// Returns every reason about the limits of the characteristic whose key begins the text.
     fn of_limits(text: &str) -> Vec<Self> {
         let key = text.split(' ').next().unwrap_or_default();
         let Some(characteristic) = Characteristic::from_key(key) else {
@@ -184,7 +184,7 @@ impl Reason {
         ]
     }
 
-    /// Returns the reason with the detail that makes it print as `text`; none when no detail does.
+    /// Returns the reason with that detail with which it prints as `text`; `None` when no detail does so.
     fn read(self, text: &str) -> Option<Self> {
         const PLACE: &str = "\0";
         let detailed = |detail: &str| Self {
@@ -201,7 +201,7 @@ impl Reason {
         Some(detailed(detail))
     }
 
-    /// Returns the message for the reason; its text omits the name of the characteristic.
+    /// Returns the message for the reason, whose text omits the name of the characteristic.
     pub fn message(&self) -> Message {
         let param = self.characteristic().map_or("", Characteristic::key);
         let message = Message::new("reason", self.code.name()).with("param", param);
@@ -233,7 +233,7 @@ impl Reason {
         self.message().say(lang)
     }
 
-    /// Returns the short text for a page: the name of the characteristic, and a word for what is wrong with it.
+    /// Returns the short text for a page: the name of the characteristic, and a word that says what is wrong with it.
     pub fn short(&self, lang: Lang) -> String {
         let message = self.message();
         let said = message.try_attribute(lang, "short");

@@ -51,7 +51,7 @@ impl Kind {
     }
 }
 
-/// The limits of a recipe by characteristic; the key of the characteristic says the unit.
+/// The limits of a recipe, by characteristic, in the unit that the key of the characteristic states.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Limits(BTreeMap<Characteristic, Ends>);
@@ -64,7 +64,7 @@ struct Ends {
 }
 
 impl Limits {
-    /// Returns the limits of a characteristic in its unit; both sides are open when the recipe names none.
+    /// Returns the limit of a characteristic in its unit; both sides are open if the recipe has none.
     pub fn of(&self, characteristic: impl Into<Characteristic>) -> Limit {
         let characteristic = characteristic.into();
         let Ends { low, high } = self.0.get(&characteristic).copied().unwrap_or_default();
@@ -72,7 +72,7 @@ impl Limits {
         Limit { unit, low, high }
     }
 
-    /// Returns every limit that the recipe names.
+    /// Returns every limit that the recipe contains.
     pub fn named(&self) -> impl Iterator<Item = (Characteristic, Limit)> + '_ {
         self.0
             .keys()
@@ -89,7 +89,7 @@ pub struct Decision {
     pub slow_repeats: u32,
 }
 
-/// Sections of a recipe that belong to the kind: the part, and how to measure it.
+/// Sections of a recipe that belong to the kind: what the part is, and how to measure it.
 pub trait KindRecipe {
     /// Returns the kind of device that the sections describe.
     fn kind(&self) -> Kind;
@@ -97,8 +97,8 @@ pub trait KindRecipe {
     /// Returns the data that parts of every kind have.
     fn part(&self) -> PartFacts;
 
-    /// Makes the device: `recipe`, which contains these sections, on a rig, with the `stored` calibration if there is
-    /// one.
+    /// Makes the device from `recipe`, which contains these sections, on a rig; uses the `stored` calibration if there
+    /// is one.
     ///
     /// # Errors
     /// Fails with the first point of the kind that the rig does not have.
@@ -161,7 +161,7 @@ pub struct PartFacts {
     pub pin_length_mm: f64,
     /// Temperature to which results are converted.
     pub reference: Celsius,
-    /// Nominal voltage that a calibration and its reference parts must share with the part, V; none for a kind that
+    /// Nominal voltage that a calibration and its reference parts must share with the part, V; `None` for a kind that
     /// needs neither.
     pub nominal_v: Option<f64>,
 }
@@ -179,7 +179,7 @@ pub struct Recipe {
     pub limits: Limits,
     /// How results become verdicts.
     pub decision: Decision,
-    /// What a person must answer during a lot.
+    /// Prompts that a person must answer during a lot.
     #[serde(rename = "prompt", default)]
     pub prompts: Vec<Prompt>,
     /// Sections of the kind: the part, and how it is measured.
@@ -218,7 +218,7 @@ impl Recipe {
         self.device.infeasible(&self.limits, rig)
     }
 
-    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be
+    /// Returns the wiring in the smallest supply range that serves the recipe. The recipe must not be
     /// [infeasible](Self::infeasible).
     ///
     /// # Errors

@@ -1,4 +1,5 @@
-//! Record of a test of any kind: results, the replies they came from, where the time went, and why it ended early.
+//! Record of a test of any kind: results, the replies behind them, the time that each stage took, and why the test
+//! ended early.
 
 use super::characteristic::Characteristic;
 use super::em_relay::Observed;
@@ -13,7 +14,7 @@ use std::collections::BTreeMap;
 use texts::Message;
 use units::Span;
 
-/// Sample behind a result: line, module, channel and raw text lead back to the bytes on the line.
+/// Sample behind a result. Its line, module, channel and raw text lead back to the bytes on the line.
 pub trait Evidence {
     /// Returns where the sample came from.
     fn origin(&self) -> &Origin;
@@ -38,7 +39,7 @@ pub enum Stop {
     Fail(Reason),
     /// The part cannot be judged.
     Void(Reason),
-    /// The rig was in trouble; this voids every result of the part, good or bad.
+    /// The rig was in trouble, which voids every result of the part, good or bad.
     Trouble(Reason),
 }
 
@@ -60,7 +61,7 @@ pub struct TestRecord<T = Own> {
     stop: Option<Stop>,
     /// Trace of all samples.
     pub trace: Trace,
-    /// Time of the test, by purpose.
+    /// Time of the test, by what the test spent it on.
     pub spent: Spent,
     /// Rig time of each stage by its key.
     pub stages: BTreeMap<&'static str, Span>,
@@ -82,12 +83,12 @@ impl<T> TestRecord<T> {
         }
     }
 
-    /// Adds `time` to the time of the stage `what`.
+    /// Adds `time` to the total of the stage `what`.
     pub fn took(&mut self, what: &'static str, time: Span) {
         *self.stages.entry(what).or_default() += time;
     }
 
-    /// Adds one result of a stage with the replies it was made from.
+    /// Adds one result of a stage, with the replies that it comes from.
     ///
     /// # Panics
     /// Panics when the result is not in the unit of its characteristic.
@@ -104,20 +105,21 @@ impl<T> TestRecord<T> {
         self.evidence.extend(origins.map(|origin| (of, origin)));
     }
 
-    /// Removes the results of a characteristic, which a later reading replaces.
+    /// Removes the results of a characteristic, because a later reading replaces them.
     pub fn forget(&mut self, of: impl Into<Characteristic>) {
         let of = of.into();
         self.readings.retain(|(known, _)| *known != of);
     }
 
-    /// Returns each result of a characteristic, in the order they came.
+    /// Returns each result of a characteristic, in the order of measurement.
     pub fn each(&self, of: impl Into<Characteristic>) -> impl Iterator<Item = &Reading> {
         let of = of.into();
         let own = self.readings.iter().filter(move |(known, _)| *known == of);
         own.map(|(_, reading)| reading)
     }
 
-    /// Returns the result of a characteristic: the mean of its repetitions, whose scatter enters the uncertainty.
+    /// Returns the result of a characteristic: the mean of its repetitions, whose scatter enters the uncertainty;
+    /// `None` if it was not measured.
     pub fn result(&self, of: impl Into<Characteristic>) -> Option<Reading> {
         let of = of.into();
         let repetitions: Vec<Reading> = self.each(of).cloned().collect();
@@ -138,7 +140,7 @@ impl<T> TestRecord<T> {
         all.into_iter().filter_map(one).collect()
     }
 
-    /// Returns the result when it is a number with a finite uncertainty.
+    /// Returns the result of a characteristic if its value and uncertainty are finite.
     pub fn usable(&self, of: impl Into<Characteristic>) -> Option<Reading> {
         self.result(of).filter(Reading::is_usable)
     }
@@ -148,14 +150,14 @@ impl<T> TestRecord<T> {
         self.each(of).count()
     }
 
-    /// Returns the origin of each reply behind a characteristic, in the order they came.
+    /// Returns the origin of each reply behind a characteristic, in the order of the replies.
     pub fn evidence(&self, of: impl Into<Characteristic>) -> impl Iterator<Item = &Origin> {
         let of = of.into();
         let own = self.evidence.iter().filter(move |(known, _)| *known == of);
         own.map(|(_, origin)| origin)
     }
 
-    /// Ends the test early for what a stage has found; a finding that ended it before remains.
+    /// Ends the test early because of what a stage has found; keeps a finding that has ended it before.
     pub fn stop(&mut self, found: impl Into<Reason>) {
         let reason = found.into();
         let stop = match reason.is_failure() {
@@ -165,7 +167,7 @@ impl<T> TestRecord<T> {
         self.stop.get_or_insert(stop);
     }
 
-    /// Ends the test early because the rig is in trouble; this replaces any finding that ended it before.
+    /// Ends the test early because the rig is in trouble; replaces any finding that has ended it before.
     pub fn trouble(&mut self, why: Message) {
         if !matches!(self.stop, Some(Stop::Trouble(_))) {
             self.stop = Some(Stop::Trouble(Reason::rig_trouble(why)));
@@ -177,7 +179,7 @@ impl<T> TestRecord<T> {
         self.stop.is_some()
     }
 
-    /// Returns why the test ended early.
+    /// Returns why the test ended early; `None` if it did not.
     pub fn why_stopped(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }

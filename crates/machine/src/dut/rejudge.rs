@@ -1,9 +1,9 @@
-//! Whether a recipe may judge stored values of a part that was measured by another recipe, and how they convert.
+//! Whether a recipe may judge the stored values of a part that another recipe measured, and how to convert them.
 
 use super::{Characteristic, Kind, Recipe};
 use units::Celsius;
 
-/// Conditions that stored values refer to, from the recipe of their test.
+/// Conditions to which stored values refer, from the recipe of their test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Basis {
     /// Kind of the part.

@@ -9,7 +9,7 @@ use super::record::Stop;
 use crate::gauge::Judgement;
 pub use crate::rig::bin::Bin;
 
-/// Returns the rank of a bin within its kind, 0 for the worst; the greatest rank for a bin that belongs to no kind.
+/// Returns the rank of a bin within its kind, 0 for the worst; `usize::MAX` for a bin of no kind.
 fn rank(bin: Bin) -> usize {
     let of_kind = |kind: Kind| kind.definition().bins.iter().position(|it| *it == bin);
     Kind::ALL
@@ -21,7 +21,7 @@ fn rank(bin: Bin) -> usize {
 /// The conclusion of a test about its part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every limit is proven kept.
+    /// Every value is proven to lie within its limits.
     Pass,
     /// The part is bad, for at least one reason, worst first.
     Fail(Vec<Reason>),
@@ -30,16 +30,16 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the verdict of a part with `reason`, a failure that no limit shows, and `others`, failures against
-    /// limits; worst bin first.
+    /// Returns the verdict of a part that failed for `reason`, which concerns no limit, and for `others`, which do; the
+    /// worst bin comes first.
     pub fn failed(reason: Reason, mut others: Vec<Reason>) -> Self {
         others.push(reason);
         others.sort_by_key(|reason| rank(reason.bin()));
         Self::Fail(others)
     }
 
-    /// Returns the verdict of a part for which `expected` had to be measured; conditional results have been repeated
-    /// before. A proven failure outweighs a void: the part is bad whatever else could not be measured.
+    /// Returns the verdict of a part of which `expected` had to be measured; the caller has already repeated
+    /// conditional results. A proven failure outweighs a void: the part is bad whatever else could not be measured.
     pub fn of(expected: &[Characteristic], judged: &[(Characteristic, Judgement)]) -> Self {
         let mut failed: Vec<Reason> = judged
             .iter()
@@ -66,7 +66,7 @@ impl Verdict {
         }
     }
 
-    /// Returns the verdict of a part; `stop` is why its test ended early, none when it did not. A proven failure
+    /// Returns the verdict of a part; `stop` is why its test ended early, `None` when it did not. A proven failure
     /// outweighs every stop except trouble of the rig.
     pub fn after(
         stop: Option<&Stop>,

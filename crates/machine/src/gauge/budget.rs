@@ -56,9 +56,9 @@ impl Budget {
         self
     }
 
-    /// Adds a term that repetition does not reduce and that is itself an estimate; the last term of a budget. Student's t
-    /// of the effective degrees of freedom of all terms (Welch and Satterthwaite, GUM G.4) widens it, so that k = 2
-    /// covers as much as with many.
+    /// Adds a term that repetition does not reduce and that is itself an estimate. Call this after all other terms are
+    /// added: the term is widened to Student's t of the effective degrees of freedom of the whole budget (Welch and
+    /// Satterthwaite, GUM G.4), so that k = 2 covers as much as with many degrees of freedom.
     pub fn with_estimated(self, source: &'static str, of: Deviation) -> Self {
         let own = of.value.powi(2);
         let others = self.combined().powi(2);

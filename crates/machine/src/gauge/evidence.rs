@@ -1,10 +1,10 @@
-//! Evidence against a promised standard deviation: pooled residuals, tested after every one of them.
+//! Evidence against a promised standard deviation: pooled residuals, tested anew after each of them.
 //!
-//! A residual has a promised variance: that of the term under test and that of the other terms beside it. If the term
-//! is `f` times as large as promised, the residual is more likely by a known ratio. The evidence is the mean of these
-//! likelihood ratios over the factors [`FACTORS`]. While the promise holds its expectation never grows, so it reaches
-//! `1 / rate` in a share of at most `rate` of all lots, at any number of looks (Ville's inequality). A smaller scatter
-//! than promised is no evidence.
+//! A residual has a promised variance: the sum of that of the term under test and those of all other terms. If the
+//! standard deviation of the term is `f` times the promised one, the likelihood of the residual changes by a known
+//! ratio. The evidence is the mean of these likelihood ratios over the factors `f` in [`FACTORS`]. While the promise
+//! holds, the expectation of the evidence never grows, so the evidence reaches `1 / rate` in a share of at most `rate`
+//! of all lots, however often it is tested (Ville's inequality). A smaller scatter than promised is no evidence.
 
 use super::factor::Deviation;
 use super::repetition::student;
@@ -14,7 +14,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// Multiples of the promised standard deviation that the evidence compares it with.
 const FACTORS: [f64; 5] = [1.25, 1.5, 2.0, 3.0, 5.0];
 
-/// Share of the probability on either side of the interval of [`Evidence::seen`].
+/// Probability on either side of the interval in [`Evidence::seen`].
 const TAIL: f64 = 0.025;
 
 /// Returns the degrees of freedom of a standard deviation that is known to `u_pct` percent (GUM G.4.2).
@@ -92,7 +92,8 @@ impl Evidence {
         }
     }
 
-    /// Returns true when the residuals disprove the promise, falsely in a share of at most `rate` of all lots.
+    /// Returns true when the residuals disprove the promise. A promise that holds is disproved in a share of at most
+    /// `rate` of all lots.
     pub fn disproves(&self, rate: f64) -> bool {
         let greatest = self.logarithms.into_iter().fold(f64::MIN, f64::max);
         let sum: f64 = self.logarithms.iter().map(|it| (it - greatest).exp()).sum();
@@ -110,8 +111,8 @@ impl Evidence {
         })
     }
 
-    /// Returns the standard deviation for budgets as a multiple of the promised one: widened by Student's t, at least
-    /// 1.
+    /// Returns the standard deviation that budgets should use, as a multiple of the promised one: the estimate widened
+    /// by Student's t, at least 1.
     pub fn covering(&self) -> f64 {
         if self.freedom < 1.0 {
             return 1.0;
@@ -120,8 +121,8 @@ impl Evidence {
         self.multiple(widened).max(1.0)
     }
 
-    /// Returns the standard deviation as a multiple of the promised one, which counts as much as residuals of `promise`
-    /// degrees of freedom: both pooled.
+    /// Returns the pooled standard deviation, as a multiple of the promised one. The promise counts as much as
+    /// residuals with `promise` degrees of freedom.
     pub fn pooled(&self, promise: f64) -> Deviation {
         let freedom = promise + self.freedom;
         Deviation {
@@ -130,8 +131,8 @@ impl Evidence {
         }
     }
 
-    /// Returns the multiple of the promised standard deviation at which the whole variance is `ratio` times the
-    /// promised one.
+    /// Returns the multiple of the promised standard deviation at which the variance of all terms together is `ratio`
+    /// times the promised one.
     fn multiple(&self, ratio: f64) -> f64 {
         let share = match self.freedom > 0.0 {
             true => self.shares / self.freedom,

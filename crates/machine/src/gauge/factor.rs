@@ -24,7 +24,7 @@ impl Factor {
 pub struct Deviation {
     /// Value, in the unit that the field or the method states.
     pub value: f64,
-    /// Degrees of freedom; infinite for a value that counts as known.
+    /// Degrees of freedom; infinite for a value that counts as exactly known.
     pub freedom: f64,
 }
 

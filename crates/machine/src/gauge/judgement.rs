@@ -28,7 +28,7 @@ impl Limit {
     }
 }
 
-/// How a decision takes the uncertainty into account.
+/// How a judgement takes the uncertainty into account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {

@@ -82,7 +82,7 @@ impl fmt::Display for Actuator {
     }
 }
 
-/// Known position of an actuator, mm of its stroke.
+/// Known position of an actuator, mm from its rest end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Position {
     /// At rest here, confirmed by a sensor or the drive.

@@ -1,8 +1,8 @@
 //! The remedy for a refused motion, found by trial: a change after which the guard clears the motion.
 //!
-//! The search tries one change at a time, in this order: an actuator that carries the blocker or the mover goes to
-//! rest, another actuator goes to rest, the same actuators go to their other ends, a part is removed. The first change
-//! that clears the motion is the advice.
+//! The search tries one change at a time, in this order: an actuator that carries the blocking or the moving body goes
+//! to rest, another actuator goes to rest, the same actuators go to their other ends, a part is removed. The first
+//! change that clears the motion is the advice.
 
 use super::actuator::{Actuator, Position};
 use super::judge::judge;

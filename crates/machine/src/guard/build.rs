@@ -1,4 +1,4 @@
-//! Builds the scene from the settings and rejects settings that would make an answer meaningless.
+//! Builds the scene from the settings, and rejects settings with which a decision of the guard would mean nothing.
 
 use super::axes::axes_of;
 use super::bodies::{bodies_of, part_rides};
@@ -76,7 +76,8 @@ pub(super) fn finite(path: &str, numbers: &[f64]) -> Result<(), GuardError> {
 fn check_names(ids: &[String], settings: &GuardSettings) -> Result<(), GuardError> {
     for (index, id) in ids.iter().enumerate() {
         if let Some(first) = ids[..index].iter().position(|earlier| earlier == id) {
-            // The error names the later of two equal ids, unless that is a role of the part.
+            // The error names the later of two elements with one id, or the element that has the id of a role of the
+            // part.
             let blamed = if index < settings.elements.len() {
                 index
             } else {

@@ -1,6 +1,6 @@
 //! The bodies that a stroke carries along, and the parts in the space during it.
 //!
-//! - A part in the pocket counts as in front of the pusher once the pusher moves or may have moved.
+//! - A part in the pocket counts as in front of the pusher once the pusher has begun to move, or may have.
 //! - The pusher carries the part in front of it forward. Going back it leaves the part where it is: the part remains
 //!   an obstacle for all other bodies, but the pusher cannot hit the part that it leaves.
 //! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the nest takes the part in
@@ -16,14 +16,14 @@ use super::scene::Scene;
 use super::situation::Situation;
 use super::space::PresentRoles;
 
-/// The roles of the part during one stroke.
+/// The roles of the parts during one stroke: a role is a place of a part that has its own body in the scene.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PartRoles {
     /// Roles present in the space.
     pub present: PresentRoles,
-    /// Role that moves with the stroke.
+    /// Role that moves with the stroke, if a part does.
     pub taken: Option<Role>,
-    /// Role that the stroke leaves behind.
+    /// Role that the stroke leaves behind, if it leaves a part.
     pub left: Option<Role>,
 }
 
@@ -62,7 +62,7 @@ impl PartRoles {
         self.present[role.index()]
     }
 
-    /// Moves the part to another role for this stroke.
+    /// Moves the part in role `from` to role `to` for this stroke.
     fn recast(&mut self, from: Role, to: Role) {
         self.present[from.index()] = false;
         self.present[to.index()] = true;
@@ -75,7 +75,7 @@ impl PartRoles {
         }
     }
 
-    /// Adds the pocket's part in front of the pusher when the pusher may have left its rest end.
+    /// Moves the pocket's part to the role in front of the pusher, for a pusher that may have left its rest end.
     fn put_before_pusher(&mut self) {
         if self.has(Role::Pocket) && !self.has(Role::Pusher) {
             self.recast(Role::Pocket, Role::Pusher);

@@ -23,14 +23,14 @@ pub enum GuardError {
         /// Unit found.
         found: String,
     },
-    /// A body that lacks a member of its kind, or has one of another kind.
+    /// A body that lacks a key of its kind, or has a key of another kind.
     #[error("{path}: a {kind} needs {expected} and no other size")]
     Member {
         /// Place in the file.
         path: String,
         /// `block`, `cylinder` or `compound`.
         kind: &'static str,
-        /// The missing member.
+        /// The keys that the kind needs.
         expected: &'static str,
     },
     /// A size or pose that makes no valid body.
@@ -66,10 +66,10 @@ pub enum GuardError {
         /// Number of descriptions.
         times: usize,
     },
-    /// `rides` forms a circle.
+    /// The keys `rides` form a cycle: an actuator rides on itself, perhaps through others.
     #[error("actuator {actuator}: rides on itself through others")]
     Circle {
-        /// An actuator of the circle.
+        /// An actuator of this cycle.
         actuator: Actuator,
     },
     /// In the empty rig at rest an actuator cannot make its stroke.

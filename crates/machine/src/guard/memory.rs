@@ -1,7 +1,8 @@
 //! Memory of the guard's earlier answers.
 //!
-//! Sensors report ends and the station repeats its cycle, so a lot repeats the same few hundred questions. The key of
-//! an answer has every bit that the answer depends on (the scene is fixed), so a remembered answer equals a fresh one.
+//! Sensors report only ends and the station repeats its cycle, so a lot asks the same few hundred questions again and
+//! again. The key of an answer holds every bit on which the answer depends (the scene is fixed), so a remembered answer
+//! equals a computed one.
 
 use super::actuator::{Actuator, Position};
 use super::motion::Motion;

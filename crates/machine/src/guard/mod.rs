@@ -13,9 +13,9 @@
 //!
 //! **Rules.**
 //! 1. Any two bodies keep the default margin, unless a pair rule says otherwise.
-//! 2. An actuator in motion or in doubt occupies its whole span, and one of unknown position its whole stroke. So
-//!    motions that overlap in time are checked against each other's swept room: for every other motion a mover is
-//!    [`Between`](Position::Between).
+//! 2. An actuator in motion or in doubt occupies its whole span, and one of unknown position its whole stroke. Two
+//!    motions that overlap in time are therefore checked against each other's swept room, because the situation of each
+//!    shows the other's actuator as [`Between`](Position::Between).
 //! 3. A mover of unknown start is swept from the far end of its span.
 //! 4. The guard refuses NaN, a position off its stroke, and a part without size.
 //!
@@ -101,8 +101,8 @@ impl Guard {
         Ok(guard)
     }
 
-    /// Clears `motion` in `situation` or refuses it. Equal inputs give equal results; repeated ones come from a
-    /// memory.
+    /// Clears `motion` in `situation` or refuses it. Equal inputs give equal results; for repeated inputs the guard
+    /// remembers the result.
     ///
     /// # Errors
     /// Fails with a [`Refusal`], which is a normal result: show it and do not move.

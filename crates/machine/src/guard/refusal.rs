@@ -44,8 +44,8 @@ pub struct Blocked {
     /// Place of the contact, mm.
     pub at: [f64; 3],
     /// The last clear pose, mm of the stroke: the guard clears the stroke up to here, and refuses it at most a
-    /// hundredth of a millimetre further on. An actuator that can stop on its way may move here, and one that stopped
-    /// beyond may back-track to here. `None` when the start is blocked or unknown.
+    /// hundredth of a millimetre beyond. An actuator that can stop on its way may move to this pose, and one that has
+    /// stopped beyond it may return to it. `None` when the start is blocked or unknown.
     pub last_clear_mm: Option<f64>,
     /// Action that would make the motion possible, for example "raise sort z".
     pub would_help: String,

@@ -6,7 +6,7 @@ use super::error::GuardError;
 use super::settings::{GuardSettings, PairRule, PairSettings};
 use lpm::Permission;
 
-/// Permission of a pair, and the actuators whose motion it is limited to, if any.
+/// Permission of a pair of bodies, and the actuators to whose motion it is limited, if any.
 #[derive(Debug, Clone, Copy)]
 struct Allowed {
     permission: Permission,

@@ -9,7 +9,7 @@ use super::settings::Policy;
 use super::situation::Situation;
 use lpm::{Mover, Pose, Shape};
 
-/// An actuator's axis.
+/// The axis of an actuator: direction and range of its stroke.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     /// Unit vector of the stroke.
@@ -21,7 +21,8 @@ pub(super) struct Axis {
     pub to_end: String,
 }
 
-/// An actuator that carries a body, with the body's own direction (an opposed finger moves against the axis).
+/// An actuator that carries a body, with the direction in which it moves this body (an opposed finger moves against the
+/// axis).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ride {
     pub actuator: Actuator,
@@ -33,7 +34,7 @@ pub(super) struct Ride {
 pub(super) struct Body {
     pub id: String,
     pub shape: Shape,
-    /// The shape, decomposed so that sweeps use its true form.
+    /// The shape, decomposed in advance so that sweeps use its true form.
     pub mover: Mover,
     /// Pose with all actuators at rest.
     pub pose: Pose,
@@ -74,7 +75,7 @@ impl Scene {
         }
     }
 
-    /// Returns the carriers of body `number`, the nearest first; includes the roles of the part.
+    /// Returns the carriers of the element or the role of the part with this number, the nearest first.
     pub fn rides(&self, number: usize) -> &[Ride] {
         match self.bodies.get(number) {
             Some(body) => &body.rides,

@@ -33,13 +33,13 @@ pub struct GuardSettings {
 pub struct Policy {
     /// Distance that any two bodies without a pair rule must exceed, mm, >= 0.
     pub default_margin_mm: f64,
-    /// How far a part may be pressed into its support or its pusher, mm: covers flatness and mould seams. Default
-    /// depth of `may_touch` pairs.
+    /// How far a part may be pressed into its support or its pusher, mm, which covers flatness and mould seams; the
+    /// default of `depth_mm` in pairs that may touch.
     pub touch_depth_mm: f64,
     /// Least distance of the pins from the outline of the body, mm.
     pub pin_inset_mm: f64,
-    /// Waiting place of the magazine's next part, mm. A place is the middle of the lower rear (-x) edge of the part's
-    /// body.
+    /// Place where the next part waits in the magazine, mm. The coordinates of a place are those of the middle of the
+    /// lower rear (-x) edge of the part's body.
     pub mouth: [f64; 3],
     /// Place of a part in the pocket, touching the retracted pusher.
     pub pocket: [f64; 3],
@@ -66,7 +66,7 @@ pub struct Element {
     /// Pose with all actuators at rest.
     #[serde(default)]
     pub pose: PoseSettings,
-    /// Actuator that carries the element; none for a fixed one.
+    /// Actuator that carries the element; `None` for a fixed one.
     pub rides: Option<Actuator>,
 }
 
@@ -128,9 +128,10 @@ pub struct ActuatorSettings {
     pub id: Actuator,
     /// Direction of the stroke, unit length.
     pub axis: [f64; 3],
-    /// Length of the stroke, mm, > 0.
+    /// Length of the stroke, mm, > 0; absent for a slide with `points_mm`.
     pub stroke_mm: Option<f64>,
-    /// Positions of a slide, mm, instead of `stroke_mm`; the stroke runs from the least to the greatest.
+    /// Positions of a slide with several stops, mm, instead of `stroke_mm`; the stroke runs from the least to the
+    /// greatest.
     pub points_mm: Option<Vec<f64>>,
     /// The actuator that carries this one.
     pub rides: Option<Actuator>,
@@ -157,7 +158,7 @@ pub struct PairSettings {
     pub margin_mm: Option<f64>,
     /// How far the bodies of a `may_touch` pair may press into each other, mm, >= 0; `touch_depth_mm` if absent.
     pub depth_mm: Option<f64>,
-    /// Actuators during whose motion the rule holds; at other times the pair is forbidden within the default margin.
+    /// Actuators during whose motion the rule holds; at other times the pair is forbidden, with the default margin.
     pub by: Option<Vec<Actuator>>,
 }
 

@@ -2,7 +2,7 @@
 
 use super::actuator::{Actuator, Position};
 
-/// Places that hold a part now. A part belongs in one place only; two places mean two parts.
+/// Places that hold a part now. Name each part in one place only: two places mean two parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct PartPlaces {
     /// In the pocket.

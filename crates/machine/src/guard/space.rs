@@ -1,4 +1,4 @@
-//! The room that every body may occupy now, kept in the collision core.
+//! The room that every body may occupy now, as elements of the collision core.
 //!
 //! Fixed elements enter the model once. Tooling and parts are replaced one by one, only when their possible positions
 //! change.
@@ -9,7 +9,7 @@ use super::scene::Scene;
 use super::situation::{PartSize, Situation};
 use lpm::{ElementKey, Flaw, Model, Pose, Shape};
 
-/// Inputs of a body's room; equal stamps mean equal rooms.
+/// Inputs from which a body's room is computed; equal stamps mean equal rooms.
 type Stamp = (Offsets, Option<PartSize>);
 
 #[derive(Debug, Clone)]
@@ -58,7 +58,7 @@ impl Space {
         numbered.filter_map(|(number, occupant)| occupant.as_ref().map(|o| (number, o.key)))
     }
 
-    /// Returns the number of the body with this key; `None` when the core names no element.
+    /// Returns the number of the body with this key; `None` when no body has the key.
     pub fn number_of(&self, key: ElementKey) -> Option<usize> {
         self.occupants()
             .find(|(_, known)| *known == key)

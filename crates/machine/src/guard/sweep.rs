@@ -21,7 +21,8 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FirstContact {
     pub stroke: Stroke,
-    /// Number of the moving body; the next field is that of the body in its way, `None` when the core could not decide.
+    /// Number of the moving body. The next field is the number of the body in its way, `None` when the core could not
+    /// decide.
     pub mover: usize,
     pub blocker: Option<usize>,
     pub distance_mm: f64,
@@ -73,7 +74,7 @@ pub(super) fn sweep(
 }
 
 /// Returns the least distance of `stroke` to the bodies that it must not touch, mm; `None` beyond `range_mm`. Bodies
-/// that may touch do not count.
+/// that the stroke may touch do not count.
 pub(super) fn least_mm(
     scene: &Scene,
     space: &mut Space,
@@ -107,7 +108,8 @@ pub(super) fn least_mm(
     Ok(all.min_by(f64::total_cmp))
 }
 
-/// Returns the way from the far end of the span to the target; the whole span when the target lies in it.
+/// Returns the way from that end of the span which is farther from the target to the target; the whole span when the
+/// target lies in it.
 fn way((low, high): (f64, f64), to_mm: f64) -> (f64, f64) {
     if to_mm >= high {
         (low, to_mm)

@@ -15,7 +15,7 @@ use super::turn::Turn;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// Longest time of a part from the escapement to the pocket sensor.
+/// Longest time that a part takes from the escapement to the pocket sensor.
 const ARRIVES: Span = Span::ms(1500);
 /// Escapement strokes without a part after which the magazine counts as empty.
 pub const TRIES: u8 = 3;
@@ -53,7 +53,7 @@ impl Feed {
     pub fn step(self, turn: &mut Turn, nest: NestId, wanted: bool, push: bool) -> Feed {
         match self {
             Feed::Empty if wanted && turn.shows(DigitalIn::PocketPresent, true) => {
-                // A part left by an earlier run, or one that came after its time.
+                // An earlier run left the part, or the part came after its time.
                 turn.enter_pocket();
                 Feed::Ready
             }

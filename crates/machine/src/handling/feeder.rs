@@ -22,7 +22,7 @@ use units::RigTime;
 pub struct Permits {
     /// Further parts may leave the magazine.
     pub release: bool,
-    /// The part in the pocket may go to the nest.
+    /// The part in the pocket may be pushed into the nest.
     pub push: bool,
 }
 
@@ -81,7 +81,7 @@ impl Feeder {
         is_new
     }
 
-    /// Watches the beam for the falling part, even while the sequence is stopped.
+    /// Looks for the falling part at its beam, even while the sequence is stopped.
     pub fn confirm(&self, turn: &mut Turn) {
         sort::confirm(turn, &self.table);
     }
@@ -91,7 +91,7 @@ impl Feeder {
         self.sort = self.sort.driven(movement, ledger, now);
     }
 
-    /// Records that every output is safe and every motion has ended.
+    /// Records that every output has its safe value, so that every motion has ended.
     pub fn cut_off(&mut self, ledger: &Ledger) {
         self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
         self.reset_states(ledger);
@@ -138,7 +138,7 @@ impl Feeder {
         self.sort
     }
 
-    /// Returns the running test.
+    /// Returns the test under way, if there is one.
     pub fn test(&self) -> Option<&Procedure> {
         self.nests.iter().find_map(Nest::test)
     }
@@ -170,7 +170,7 @@ impl Feeder {
         self.nests.iter().all(rests) && sort && self.feed_rests()
     }
 
-    /// Returns true when neither feed nor sorter moves a part.
+    /// Returns true when neither the feed nor the sorter is moving a part.
     pub fn moves_no_part(&self) -> bool {
         let sort = matches!(self.sort, Sort::Returning | Sort::OverNest | Sort::Opening);
         sort && self.feed_rests()

@@ -1,8 +1,9 @@
 //! Parts left inside by an earlier run; a killed program leaves no record of its end.
 //!
-//! The next run looks for them during its first homing, with z up: a part left inside is in its old place or farther
-//! on, or the run reports it missing. It also reports a released part that no beam has confirmed, unless the fingers
-//! still hold it. Only sensors decide where parts are; the earlier record never causes a motion.
+//! The next run looks for these parts during its first homing, with z up. A part left inside is in its old place or
+//! farther on; if it is in neither, the run reports it missing. The run also reports a released part that no beam has
+//! confirmed, unless the fingers still hold it. Only sensors decide where parts are; the earlier record never causes a
+//! motion.
 
 use super::ledger::Ledger;
 use super::place::Place;
@@ -10,7 +11,7 @@ use super::recovery::SensedParts;
 use super::trouble::Trouble;
 use crate::rig::bin::Bin;
 
-/// Places that held a part at the last record.
+/// Places that held a part when the record was last written.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inside {
     /// The pocket.
@@ -34,13 +35,13 @@ impl Inside {
         }
     }
 
-    /// Returns true when sensors could not reconstruct these places later: a part is falling, or the next part has
-    /// taken the old place of a lifted one.
+    /// Returns true for places that the sensors alone could not reconstruct later: a part is falling, or the next part
+    /// has taken the place from which another was lifted.
     pub fn needs_record(self) -> bool {
         self.falling.is_some() || self.gripper && self.nest
     }
 
-    /// Returns a trouble for each part that is neither in its old place nor in a place it can have reached since.
+    /// Returns a trouble for each part that is neither in its old place nor in one that it can have reached since.
     pub fn missing(self, seen: &SensedParts) -> Vec<Trouble> {
         let SensedParts {
             mut pocket,
@@ -52,7 +53,7 @@ impl Inside {
         let held = self.gripper && claim(&mut gripper);
         let stayed = self.nest && (claim(&mut nest) || claim(&mut gripper));
         let waits = self.pocket && (claim(&mut pocket) || claim(&mut nest) || claim(&mut gripper));
-        // The jaws keep a part when the fingers slide off.
+        // A part that slides off the fingers stays in the jaws.
         let set_down = self.gripper && !held && claim(&mut nest);
         let gone = [
             (Place::Gripper, self.gripper && !held && !set_down),
@@ -74,7 +75,7 @@ impl Inside {
     }
 }
 
-/// Returns true when the sensor shows a part, and clears its flag: one signal accounts for one part.
+/// Returns true if the sensor shows a part, and clears `seen`: one signal accounts for one part only.
 fn claim(seen: &mut bool) -> bool {
     std::mem::take(seen)
 }

@@ -2,9 +2,9 @@
 //!
 //! A part moves from place to place and is never copied. `in = out + inside + lost` holds at every instant.
 //!
-//! The fingers may stay closed although their opening was driven, when the output module has tripped. So a released
-//! part counts as lost only after the sensor shows empty fingers; a part that the sensor still shows is back in the
-//! fingers.
+//! When the output module has tripped, the fingers may stay closed although their opening was commanded. So a released
+//! part counts as lost only after the sensor shows empty fingers; a part that the sensor still shows is put back into
+//! the fingers.
 
 use super::inside::Inside;
 use super::place::{NestId, Place};
@@ -35,7 +35,7 @@ pub struct Part {
     pub ordinal: u64,
     /// Bin of the part, after its verdict.
     pub bin: Option<Bin>,
-    /// Time from the arrival of the probes to the verdict.
+    /// Time from the arrival of the probes at the part to the verdict.
     pub test: Option<Second>,
     /// Time at which the probes arrived at the part.
     pub probed_at: Option<RigTime>,
@@ -43,7 +43,7 @@ pub struct Part {
     pub interrupted: Option<String>,
     /// Serial number of a part of the lot; `None` in a lot without them, and when no reading gives one.
     pub serial: Option<String>,
-    /// What is wrong with the serial number, so that the part goes to retest without a test; the readings.
+    /// What is wrong with the serial number, with the readings. Such a part goes to retest without a test.
     pub serial_fault: Option<(SerialFault, String)>,
 }
 
@@ -57,7 +57,7 @@ impl Part {
         })
     }
 
-    /// Marks the part as interrupted, unless it already is; returns the reason that remains.
+    /// Marks the part as interrupted; returns its reason, which is the earlier one if it was marked before.
     pub fn interrupt(&mut self, why: &str) -> String {
         let why = self.interrupted.get_or_insert_with(|| why.to_owned());
         why.clone()
@@ -69,13 +69,13 @@ impl Part {
 pub struct Fall {
     /// Bin under the fingers at the release.
     pub bin: Bin,
-    /// Time at which the opening of the fingers was driven.
+    /// Time at which the opening of the fingers was commanded.
     pub since: RigTime,
     /// True once the sensor has shown empty fingers; until then they may still hold the part.
     pub has_left: bool,
     /// Count of the bin's beam before the release.
     pub beam_before: u32,
-    /// Time of the beam's first count.
+    /// Time at which the beam first counted the part; `None` before.
     pub seen: Option<RigTime>,
 }
 
@@ -109,7 +109,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Makes an empty ledger, except for the parts left by an earlier run.
+    /// Makes a ledger that holds no part, and remembers the parts that an earlier run left inside.
     pub fn after(left: Inside) -> Self {
         Self {
             left,
@@ -139,7 +139,7 @@ impl Ledger {
         }
     }
 
-    /// Returns the part in the place for changes.
+    /// Returns the part in the place for changes; `None` without a part or without its number.
     pub fn part_mut(&mut self, place: Place) -> Option<&mut Part> {
         match self.places.get_mut(&place)? {
             Content::Numbered(part) => Some(part),
@@ -173,12 +173,12 @@ impl Ledger {
         }
     }
 
-    /// Returns the fall of the last released part, until its beam has counted it.
+    /// Returns the fall of the released part until its beam has counted the part, else `None`.
     pub fn fall(&self) -> Option<&Fall> {
         self.fall.as_ref()
     }
 
-    /// Returns the fall of the last released part for changes.
+    /// Returns [`Self::fall`] for changes.
     pub fn fall_mut(&mut self) -> Option<&mut Fall> {
         self.fall.as_mut()
     }
@@ -193,7 +193,7 @@ impl Ledger {
         self.came_in == self.went_out + self.inside() + self.lost
     }
 
-    /// Adds a part to the empty pocket.
+    /// Adds a part to the pocket, which must be empty.
     pub fn enter_pocket(&mut self) {
         self.came_in += 1;
         self.put(Place::Pocket, Content::Unnumbered { found: false });
@@ -219,7 +219,7 @@ impl Ledger {
         self.put(Place::Socket(socket), Content::Numbered(part));
     }
 
-    /// Removes the judged part that a person took out of a socket and put into its bin.
+    /// Removes the part that a person took out of a socket and put into its bin; panics unless the part is judged.
     pub fn unload_socket(&mut self, socket: u16) -> Part {
         let Content::Numbered(part) = self.take(Place::Socket(socket)) else {
             panic!("a part without a number in socket {socket}");
@@ -230,7 +230,7 @@ impl Ledger {
         part
     }
 
-    /// Adds a part of unknown origin to the empty place.
+    /// Adds a part of unknown origin to a place, which must be empty.
     pub fn find(&mut self, place: Place) {
         self.came_in += 1;
         self.found += 1;
@@ -264,7 +264,8 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Nest(nest));
     }
 
-    /// Moves the gripper's part to [`Place::Falling`], over `bin`; does nothing for an empty gripper.
+    /// Moves the gripper's part to [`Place::Falling`], over `bin`; does nothing for an empty gripper. Panics while
+    /// another part falls.
     pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
         assert!(self.fall.is_none(), "two parts fall at once");
         if !self.holds(Place::Gripper) {
@@ -280,13 +281,13 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Falling);
     }
 
-    /// Moves the falling part back to the fingers: it sticks to them, or the fingers never opened.
+    /// Moves the falling part back to the fingers, because it sticks to them or they never opened.
     pub fn return_to_gripper(&mut self) {
         self.fall = None;
         self.hand_over(Place::Falling, Place::Gripper);
     }
 
-    /// Removes the falling part, if any, after its beam has counted it.
+    /// Removes the falling part, if there is one, because its beam has counted it; the part is then out of the machine.
     pub fn land(&mut self) -> Option<Part> {
         if !self.holds(Place::Falling) {
             return None;

@@ -3,9 +3,9 @@
 //! An actuator is at an end only while its sensors show that end and it does not move; otherwise it may be anywhere on
 //! its way, or on its whole stroke. A sensor value older than [`SENSOR_AGE`] counts as unknown.
 //!
-//! The mechanism detects a stroke that arrives late (a failed work stroke is repeated once, back and forth), an
-//! actuator that leaves its end, both end sensors on at once, and the drive's alarm. A signal shorter than [`DEBOUNCE`]
-//! counts as a bounce.
+//! The mechanism detects a stroke that arrives late (it repeats a failed stroke away from rest once: back to rest, then
+//! out again), an actuator that leaves its end, both end sensors on at once, and the drive's alarm. A signal shorter
+//! than [`DEBOUNCE`] counts as a bounce.
 
 use super::moves::{Move, Strokes};
 use super::trouble::Trouble;
@@ -24,7 +24,7 @@ pub const SENSOR_AGE: Span = Span::ms(400);
 const AXIS_REACTS: Span = Span::ms(15);
 /// Time that a sensor must show a fault: longer than two scans and the bounce of a reed contact.
 pub const DEBOUNCE: Span = Span::ms(60);
-/// Number of times that a failed work stroke is repeated per part.
+/// Number of repetitions of a failed stroke away from rest, per part.
 const RETRIES: u8 = 1;
 
 /// A driven motion that has not arrived yet.
@@ -43,14 +43,14 @@ impl Underway {
     }
 }
 
-/// A failed work stroke under repetition: back to rest, then out again.
+/// A failed stroke away from rest that is being repeated: back to rest, then out again.
 #[derive(Debug, Clone, Copy)]
 struct Repetition {
     movement: Move,
     back: Move,
 }
 
-/// Results of an update.
+/// Results of one [`Mechanism::update`].
 #[derive(Debug, Default)]
 pub struct MechanismUpdate {
     /// Troubles found.
@@ -79,9 +79,9 @@ pub struct Mechanism {
     /// Motions requested and not driven yet.
     waiting: Vec<Move>,
     again: Vec<Repetition>,
-    /// Work strokes already repeated for the current part.
+    /// Strokes away from rest that have already been repeated for the current part.
     tried: Vec<Move>,
-    /// Motion that a person ordered, until [`Self::take_hand_end`] returns its end.
+    /// Motion that a person ordered; kept until [`Self::take_hand_end`] returns how it ended.
     by_hand: Option<Move>,
     watch: Watch,
     strokes_made: Vec<(&'static str, u64)>,
@@ -148,13 +148,14 @@ impl Mechanism {
         self.underway.iter().map(|underway| underway.movement)
     }
 
-    /// Returns true while an actuator may have left its end or its sensor may bounce; [`DEBOUNCE`] decides.
+    /// Returns true while it is undecided whether an actuator has left its end or its sensor bounces; [`DEBOUNCE`]
+    /// decides.
     pub fn is_undecided(&self) -> bool {
         self.watch.is_undecided()
     }
 
     /// Returns true for a deviation that no alarm explains yet: a sensor differs, or a motion has used half of its
-    /// time-out. It causes the restart check.
+    /// time-out. The cycle then checks whether a module has restarted.
     pub fn needs_restart_check(&self, now: RigTime) -> bool {
         let slow = |underway: &Underway| {
             let limit = self.timeout_of(underway.movement);
@@ -185,7 +186,7 @@ impl Mechanism {
         self.watch.drive_reset(at);
     }
 
-    /// Allows the repetition of each stroke again, for a new part.
+    /// Allows one repetition of each stroke again, because a new part begins.
     pub fn new_part(&mut self) {
         self.tried.clear();
     }
@@ -240,7 +241,7 @@ impl Mechanism {
         self.by_hand = Some(movement);
     }
 
-    /// Returns how the motion by hand ended, but only once; `None` while it moves, and without one.
+    /// Returns how the motion by hand ended, once; `None` while it moves, or without such a motion.
     pub fn take_hand_end(&mut self, now: RigTime, image: &Image) -> Option<HandEnd> {
         let movement = self.by_hand.filter(|it| !self.is_moving(*it))?;
         let end = if self.has_arrived(movement, now, image) {
@@ -254,7 +255,7 @@ impl Mechanism {
         Some(end)
     }
 
-    /// Returns true when a person ordered the fingers to close and they hold no part; by hand, this is no trouble.
+    /// Returns true when the fingers have closed on a person's order and hold no part, which by hand is no trouble.
     fn closed_on_nothing(&self, movement: Move, now: RigTime, image: &Image) -> bool {
         let shows = |point| image.input(point, now, SENSOR_AGE);
         movement == Move::GripperClose
@@ -289,14 +290,15 @@ impl Mechanism {
             && self.sensed(underway.movement, now, image)
     }
 
-    /// Returns true when a sensor value requested after the time-out does not show the end. On a slow line an earlier
-    /// value may be older than the stroke.
+    /// Returns true when a sensor value requested after the time-out does not show the end. An earlier value proves
+    /// nothing: on a slow line it may be older than the stroke.
     fn is_late(&self, underway: &Underway, image: &Image) -> bool {
         let limit = self.timeout_of(underway.movement);
         underway.was_read_since(underway.since + limit, image)
     }
 
-    /// Continues a repeated stroke after its return to rest; watches any other actuator at its new end.
+    /// Sends an actuator out again that has returned to rest for a repetition; watches any other actuator at its new
+    /// end.
     fn arrived(&mut self, movement: Move, found: &mut MechanismUpdate) {
         match self.again.iter().find(|again| again.back == movement) {
             Some(again) => found.motions.push(again.movement),

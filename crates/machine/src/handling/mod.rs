@@ -1,7 +1,8 @@
 //! Handling: brings parts to the instruments and into bins.
 //!
-//! Signals: end sensors of every actuator, part sensors of pocket, nest and gripper, a beam in the chute of each bin.
-//! A sensor value is valid for [`mechanism::SENSOR_AGE`]; an unread one is unknown, never guessed.
+//! Signals: end sensors of every actuator, part sensors of pocket, nest and gripper, and in the chute of each bin a
+//! light barrier, the *beam*. A sensor value is valid for [`mechanism::SENSOR_AGE`]; a sensor without a valid value
+//! counts as unknown, and no state is guessed for it.
 //!
 //! Normal sequence: [`feed`] lets one part into the pocket and pushes it into the nest; [`nest`] holds and tests it
 //! and hands it to the fingers; [`sort`] carries it to its bin, releases it and waits for the beam. The three overlap;
@@ -13,7 +14,8 @@
 //! After a restart: [`recovery`] brings every actuator to rest and compares the ledger with the sensors; [`inside`]
 //! holds the parts left by an earlier run.
 //!
-//! Not handled here: reactions to troubles, orders, gates of the lot. The station handles them, with alarms.
+//! Not handled here: reactions to troubles, orders, and the conditions (gates) of a lot. The station handles these,
+//! with alarms.
 
 pub mod feed;
 pub mod feeder;

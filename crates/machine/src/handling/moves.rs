@@ -137,8 +137,8 @@ impl Move {
         }
     }
 
-    /// Returns the stroke to rest that precedes a repetition; `None` for strokes to rest and for those whose return
-    /// would release a part in the wrong place.
+    /// Returns the stroke to rest that precedes a repetition of this one; `None` for a stroke to rest, and for one
+    /// whose return would release a part in the wrong place.
     pub fn way_back(self) -> Option<Move> {
         match self {
             Move::EscapementRelease => Some(Move::EscapementHold),
@@ -157,7 +157,7 @@ impl Move {
         }
     }
 
-    /// Returns the sensors of the other end; a sensor is broken when both ends are on.
+    /// Returns the sensors of the other end; when these and those of the motion's own end are on, a sensor is broken.
     pub fn other_end(self) -> &'static [DigitalIn] {
         match self {
             Move::PusherExtend => &[DigitalIn::PusherRetracted],
@@ -176,7 +176,7 @@ impl Move {
         }
     }
 
-    /// Returns the target station of the sort axis.
+    /// Returns the target station of the sort axis; `None` for any other motion.
     pub fn station(self) -> Option<AxisStation> {
         let Move::AxisTo(station) = self else {
             return None;
@@ -224,7 +224,7 @@ impl Move {
         }
     }
 
-    /// Returns the bin that the axis goes to; none for any other motion.
+    /// Returns the bin that the axis goes to; `None` for any other motion.
     pub fn bin(self) -> Option<Bin> {
         match self.station()? {
             AxisStation::Bin(bin) => Some(bin),

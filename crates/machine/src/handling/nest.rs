@@ -3,8 +3,8 @@
 //! ```text
 //! empty -> clamping -> probing -> testing -> judged -> gripping -> unclamping -> lifting -> empty
 //! ```
-//! The jaws close while the pusher returns; the probes rise only after it has returned. The fingers close while the
-//! probes go down, the jaws open only after both, and the gripper owns the part once z is up.
+//! The jaws close while the pusher returns; the probes rise only after both. The fingers close while the probes go
+//! down, the jaws open only after both, and the ledger moves the part to the gripper once z is up.
 
 use super::ledger::PartRole;
 use super::moves::Move;
@@ -21,8 +21,8 @@ use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Second};
 
-/// Greatest number of tests of a reference part whose test is void: its result affects every later part, and one lost
-/// reply should not force a new calibration.
+/// Greatest number of tests of a reference part whose test is void. Its result affects every later part, and one lost
+/// reply should not cost a new calibration.
 const REFERENCE_TESTS: u8 = 3;
 
 /// State of a nest.
@@ -55,14 +55,14 @@ pub struct Nest {
     pub state: NestState,
 }
 
-/// Conditions of a test.
+/// Conditions under which a part is tested.
 #[derive(Debug, Clone, Copy)]
 pub struct TestTerms<'a> {
     /// Device under test: recipe, calibration and the values learned from parts.
     pub device: &'a Device,
-    /// True when every result gets confirmation measurements.
+    /// True when confirmation measurements repeat every result.
     pub thorough: bool,
-    /// Serial number of the part while reference parts calibrate the rig; none otherwise.
+    /// Serial number of the part while reference parts calibrate the rig; `None` otherwise.
     pub teaching: Option<&'a str>,
 }
 
@@ -79,7 +79,7 @@ impl TestTerms<'_> {
 
 /// Inputs of a nest's step in addition to [`Turn`].
 pub struct NestContext<'a> {
-    /// Completion of the nest's job, once.
+    /// Completion of the nest's job; present in one turn only.
     pub done: Option<JobDone>,
     /// Conditions of the test.
     pub terms: TestTerms<'a>,
@@ -142,7 +142,7 @@ impl Nest {
         }
     }
 
-    /// Returns the running test.
+    /// Returns the test under way, if there is one.
     pub fn test(&self) -> Option<&Procedure> {
         let NestState::Testing(test) = &self.state else {
             return None;
@@ -151,8 +151,8 @@ impl Nest {
     }
 }
 
-/// Starts the test of a clamped part. A part that is interrupted or not identified goes to retest without one; a row
-/// records it, unless it has a row already.
+/// Raises the probes for the test of a clamped part. A part that was interrupted or is not identified goes to retest
+/// without a test, with a row in the history unless it has one already.
 fn clamped(id: NestId, turn: &mut Turn) -> NestState {
     let part = turn.ledger.part_mut(Place::Nest(id));
     let Some(why) = part.as_ref().and_then(|part| part.why_untested()) else {
@@ -209,12 +209,13 @@ fn testing(
     false
 }
 
-/// Returns the trouble to report before another test of a void reference part; `None` when there is no further test.
+/// Returns the trouble to report before a reference part with a void test is tested again; `None` when there is no
+/// further test.
 fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
     let PartRole::Reference(serial) = &turn.ledger.part(Place::Nest(id))?.role else {
         return None;
     };
-    // A complete test is inconclusive while overshoots are learned, but needs no repetition.
+    // While overshoots are learned, a complete test may be inconclusive; it needs no repetition.
     let why = test.why_void()?;
     (test.number() < REFERENCE_TESTS)
         .then(|| Trouble::ReferenceRepeated(serial.clone(), why.clone()))
@@ -259,7 +260,7 @@ fn lifted(id: NestId, turn: &mut Turn, context: NestContext) -> NestState {
     NestState::Empty
 }
 
-/// Takes the completion of this nest's job; leaves that of another nest.
+/// Takes the completion of this nest's job out of `job`; leaves that of another nest there.
 pub(super) fn answer_for(id: NestId, job: &mut Option<NestDone>) -> Option<JobDone> {
     job.take_if(|job| job.nest == id).map(|job| job.done)
 }

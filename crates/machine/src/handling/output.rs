@@ -27,7 +27,7 @@ pub struct NestDone {
     pub done: JobDone,
 }
 
-/// A manual motion; a refusal by the guard becomes the answer to its order.
+/// A motion by hand; if the guard refuses it, the refusal becomes the answer to its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Jog {
     /// The motion.
@@ -41,15 +41,15 @@ pub struct Jog {
 pub struct Commands {
     /// Motions that the guard must clear and the rig then carries out.
     pub motions: Vec<Move>,
-    /// A manual motion.
+    /// A motion by hand.
     pub jog: Option<Jog>,
     /// Digital outputs that move nothing, with their values.
     pub outputs: Vec<(DigitalOut, bool)>,
     /// Job for the measuring line; one at a time.
     pub job: Option<NestJob>,
-    /// Beam whose event counter every scan reads.
+    /// Beam whose event counter the scan polls.
     pub beam: Option<DigitalInput>,
-    /// True while an actuator deviates without an alarm: the cycle then asks the modules for their reset status
+    /// True while an actuator deviates and no alarm explains it: the cycle then reads the reset status of the modules
     /// (restart check).
     pub restart_check: bool,
     /// True to set all outputs to their safe values immediately.
@@ -60,7 +60,7 @@ pub struct Commands {
     pub wake_at: Option<RigTime>,
 }
 
-/// Events of parts, for the record.
+/// Events of parts, for the history.
 #[derive(Debug, Default)]
 pub struct PartEvents {
     /// Parts judged in this turn.
@@ -126,6 +126,6 @@ pub struct Landed {
 pub struct NestExit {
     /// Ordinal of the part.
     pub ordinal: u64,
-    /// Time since the previous part left; `None` for the first.
+    /// Time since the previous part left the nest; `None` for the first part.
     pub cycle: Option<Second>,
 }

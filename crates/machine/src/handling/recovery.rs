@@ -2,11 +2,11 @@
 //!
 //! 1. Resets the drive of the axis and switches its servo on, before any motion.
 //! 2. Raises z, before anything else moves near the nest.
-//! 3. Compares the ledger with the sensors: parts are where the sensors show them. A part unknown to the ledger is
-//!    *found*, a part that no sensor shows is *lost*; both are reported. So is a missing part of those that an earlier
-//!    run [left inside](super::inside).
+//! 3. Compares the ledger with the sensors, which decide where parts are. Reports a part unknown to the ledger as
+//!    *found*, a part that no sensor shows as *lost*, and a missing part that an earlier run
+//!    [left inside](super::inside) as *gone*.
 //! 4. Brings every other actuator to rest, one at a time. A motion that the guard refuses waits until the others are
-//!    home; an alarm follows when only refused ones remain. Fingers that hold a part stay closed.
+//!    home; an alarm follows when only refused motions remain. Fingers that hold a part stay closed.
 //! 5. The ordinary sequence (feed, nest without a test, sort) then discharges the parts inside to retest.
 //!
 //! Homing never moves from an assumed position: safe outputs invalidate the position of the axis, and for the guard an
@@ -66,8 +66,8 @@ impl Default for Recovery {
 }
 
 impl Recovery {
-    /// Steps homing once; returns true when everything is home. `releasing`: the escapement may have let a part
-    /// through.
+    /// Steps homing once; returns true when everything is home. `releasing`: the escapement may have let a part through
+    /// before the cut-off.
     pub fn step(&mut self, turn: &mut Turn, releasing: bool) -> bool {
         match self.stage {
             HomingStep::Looking => {
@@ -96,7 +96,8 @@ impl Recovery {
         matches!(self.stage, HomingStep::Drive(since) if now.since(since) >= DRIVE_RESET)
     }
 
-    /// Defers a motion that the guard refused; returns false when no other motion is left to try first.
+    /// Moves a motion that the guard refused to the end of the list; returns false when every remaining motion has been
+    /// refused.
     pub fn refused(&mut self, movement: Move) -> bool {
         if self.requested != Some(movement) || self.stage != HomingStep::Home {
             return false;
@@ -109,7 +110,8 @@ impl Recovery {
         self.refused < self.left.len()
     }
 
-    /// Repeats the reset until the axis drive has accepted it; before that the axis does not move.
+    /// Waits for the end of the drive's reset, then switches the servo on; reports the drive if its alarm is still on.
+    /// The axis does not move before.
     fn drive(&mut self, turn: &mut Turn, since: RigTime) {
         let taken = since + DRIVE_RESET;
         let looked = turn.image.input_at(DigitalIn::AxisAlarm) >= Some(taken);
@@ -131,7 +133,7 @@ impl Recovery {
         }
     }
 
-    /// Keeps fingers closed that hold a part; the axis takes the part to its bin from its present position.
+    /// Keeps fingers that hold a part closed; the axis stays where it is until it carries the part to its bin.
     fn leave_gripped(&mut self, ledger: &Ledger) {
         if ledger.holds(Place::Gripper) {
             self.left
@@ -174,8 +176,8 @@ impl SensedParts {
     }
 }
 
-/// Moves the part that the pusher delivered before the cut-off to the nest in the ledger: the nest sensor then shows
-/// this part, not one that slid from the fingers.
+/// Moves a part in the ledger from the pocket to the nest if the pusher had delivered it before the cut-off, so that
+/// the nest sensor is not taken to show a part that slid from the fingers.
 fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
@@ -183,7 +185,7 @@ fn pushed(turn: &mut Turn, seen: &SensedParts) {
     }
 }
 
-/// Brings the ledger in line with the sensors, with z up. Interrupts the parts in nest and gripper.
+/// Brings the ledger in line with the sensors, with z up; reports parts that are found or missing.
 fn reconcile(turn: &mut Turn, seen: &SensedParts, releasing: bool) {
     let missing = std::mem::take(&mut turn.ledger.left).missing(seen);
     turn.trouble.extend(missing);

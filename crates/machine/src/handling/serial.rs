@@ -1,14 +1,14 @@
 //! Serial numbers of the parts of a lot: counted by the rig, read at the pocket, or scanned by a person.
 //!
-//! A code reader looks at the part in the pocket, which lies there from the sensor `pocket_present` to the stroke of the
-//! pusher. Its readings count from the release of the part on, because the reader may be faster than the scan of the
-//! sensor. The pusher waits for a reading, at most [`Source::Reader::timeout`] from the arrival on.
+//! A code reader reads the part in the pocket, which lies there from the signal of the sensor `pocket_present` to the
+//! stroke of the pusher. Its readings count from the release of the part on, because the reader may be faster than the
+//! scan of the sensor. The pusher waits for a reading, at most [`Source::Reader::timeout`] from the arrival on.
 //!
 //! A person scans the code of a part before loading it; the escapement releases a part only while a scan waits, and the
 //! part gets the oldest scan. Scans that wait at the end of a run are dropped: the history raises an alarm with their
 //! numbers, and the station takes no scan until a person has acknowledged it.
 //!
-//! The number belongs to the part once it is in the nest. A part without a reading, with two different ones, or with the
+//! The part gets its number once it is in the nest. A part without a reading, with two different ones, or with the
 //! number of another part goes to retest without a test. A number is free again when its part lands in retest, so that
 //! the same part may come again.
 
@@ -22,7 +22,7 @@ use units::{RigTime, Span};
 
 /// Greatest number of characters of a serial number.
 pub const LONGEST: usize = 64;
-/// Greatest number of scanned parts between the scanner and the pocket.
+/// Greatest number of scans that wait for their parts to come into the pocket.
 const MOST_WAITING: usize = 100;
 
 /// Source of serial numbers, as `lot.toml` names it.
@@ -51,8 +51,8 @@ fn usual_template() -> String {
     "{lot}-{number:06}".to_owned()
 }
 
-/// Returns the serial number of a counted part: `template` with the name of the lot for `{lot}`, and the number for
-/// `{number}`, or with leading zeros for `{number:06}`. `None` when the template lacks one of the two or has other braces.
+/// Returns the serial number of a counted part: `template` with the name of the lot for `{lot}`, and `number` for
+/// `{number}`, with leading zeros for `{number:06}`. `None` when the template lacks one of the two or has other braces.
 pub fn counted(template: &str, lot: &str, number: u64) -> Option<String> {
     let (before, rest) = template.split_once("{number")?;
     let (width, after) = rest.split_once('}')?;
@@ -69,7 +69,7 @@ pub fn counted(template: &str, lot: &str, number: u64) -> Option<String> {
     is_whole.then(|| text.replace("{lot}", lot))
 }
 
-/// Returns the text of a reading or a scan without blanks around it; `None` unless it has 1 to [`LONGEST`] printable
+/// Returns the text of a reading or scan without surrounding blanks; `None` unless it has 1 to [`LONGEST`] printable
 /// ASCII characters.
 pub fn readable(text: &str) -> Option<&str> {
     let text = text.trim();
@@ -78,7 +78,7 @@ pub fn readable(text: &str) -> Option<&str> {
     (fits && plain).then_some(text)
 }
 
-/// Source of the serial numbers of a run.
+/// Source of the serial numbers in a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Source {
     /// The parts of the lot have no serial numbers.
@@ -109,7 +109,7 @@ pub enum ScanRefused {
     NotScanned,
     /// The text is no serial number.
     Unreadable,
-    /// Another part of the lot has the number.
+    /// A part of the lot has the number already.
     Repeated,
     /// Too many scanned parts wait.
     TooMany,
@@ -119,11 +119,11 @@ pub enum ScanRefused {
 #[derive(Debug, Clone, Default)]
 pub struct Serials {
     source: Source,
-    /// Numbers of parts that landed in a bin other than retest, also in earlier runs of the lot.
+    /// Numbers of parts that landed in a bin other than retest, in this run and in earlier ones of the lot.
     taken: BTreeSet<String>,
     /// Scans whose parts have not come into the pocket, the oldest first.
     waiting: VecDeque<String>,
-    /// Readings of the part in the pocket, each different one once.
+    /// Readings of the part in the pocket, without duplicates.
     read: Vec<String>,
     /// Time at which the part came into the pocket; `None` once no further reading is expected.
     expected_since: Option<RigTime>,
@@ -175,7 +175,7 @@ impl Serials {
         newest.map(|_| ()).ok_or(ScanRefused::NotScanned)
     }
 
-    /// Returns true when another part may leave the magazine.
+    /// Returns true unless the next part of the lot needs a scan first, and none waits.
     pub fn may_release(&self) -> bool {
         self.source != Source::Wedge || !self.waiting.is_empty()
     }
@@ -187,8 +187,8 @@ impl Serials {
         self.is_released = true;
     }
 
-    /// Notes that a part has come into the pocket; `of_lot`: it is no reference part. A part that lay there before the
-    /// escapement opened takes no scan.
+    /// Notes that a part has come into the pocket; `of_lot`: it belongs to the lot and is no reference part. A part
+    /// that lay there before the escapement opened takes no scan.
     pub fn arrived(&mut self, now: RigTime, of_lot: bool) {
         let expected = std::mem::take(&mut self.is_released) && of_lot;
         match self.source {
@@ -218,7 +218,7 @@ impl Serials {
         }
     }
 
-    /// Returns true when the pusher need not wait for a reading of the part in the pocket.
+    /// Returns true when the pusher need not wait any longer for a reading of the part in the pocket.
     pub fn is_settled(&self, now: RigTime) -> bool {
         let Source::Reader { timeout } = self.source else {
             return true;

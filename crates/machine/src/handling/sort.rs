@@ -4,11 +4,12 @@
 //! returning -> over nest -> lowering -> at part -> (nest closes fingers, lifts) -> carrying
 //!           -> over bin -> letting go -> opening -> returning
 //! ```
-//! The sorter does not return while open fingers still hold a part, which they would drop on the next one.
+//! The sorter does not return while its open fingers still hold a part, because they would drop this part on the next
+//! one.
 //!
-//! It releases a part only when the part's rows are durable and the previous part has passed its beam. z comes down
-//! early, during the test, once the pusher has returned. Fingers also open before they close once more on a part
-//! that they missed (`mechanism.rs`), in homing (`recovery.rs`) and by hand (`crate::station::answers`).
+//! It releases a part only when the part's rows are safely on the disk and the previous part has passed its beam. z
+//! comes down early, during the test, once the pusher has returned. Fingers also open before they close once more on a
+//! part that they missed (`mechanism.rs`), in homing (`recovery.rs`) and by hand (`crate::station::answers`).
 
 use super::ledger::Ledger;
 use super::moves::Move;
@@ -21,13 +22,13 @@ use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// Longest time from the opening of the gripper to the beam.
+/// Longest time that a part takes from the opening of the gripper to the beam.
 const FALL: Span = Span::ms(1500);
 
-/// Time after the opening of the fingers at which a part that they still show counts as sticking.
+/// Time after the opening of the fingers from which a part that their sensor still shows counts as sticking.
 const STICKS: Span = Span::ms(500);
 
-/// Longest time between the counts of a part and of a second body that clings to it, at the beam.
+/// Longest time between the counts of a part and of a second body that clings to it, both at the same beam.
 const SECOND_BODY: Span = Span::ms(80);
 
 /// State of the sorter.
@@ -47,8 +48,8 @@ pub enum Sort {
     Carrying(Bin),
     /// Over the bin since this time.
     OverBin(Bin, RigTime),
-    /// The opening of the fingers is requested; the fingers own the part until the rig drives that opening. Holds the
-    /// bin, and the count of its beam before the opening.
+    /// The opening of the fingers is requested; the fingers still own the part until the rig drives that opening. Holds
+    /// the bin, and the count of its beam before the opening.
     LettingGo(Bin, u32),
     /// The fingers open.
     Opening,
@@ -118,12 +119,12 @@ impl Sort {
     }
 }
 
-/// Releases the part once its rows are durable and the beam's count is known.
+/// Releases the part once its rows are safely on the disk and the beam's count is known.
 fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sort {
     assert!(since <= turn.now, "over the bin in the future");
     let stay = Sort::OverBin(bin, since);
     let beam = table.beam(bin);
-    // A beam that stays dark shows a full chute.
+    // A beam that stays dark (interrupted) shows a full chute.
     if turn.ledger.fall().is_some() || turn.shows(beam, true) {
         return stay;
     }
@@ -159,7 +160,7 @@ fn opened(turn: &mut Turn) -> Sort {
     Sort::Opening
 }
 
-/// Watches the beam for the falling part, even while the sequence is stopped.
+/// Looks for the falling part at the beam, even while the sequence is stopped.
 pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
     let seen_empty = turn.shows(DigitalIn::GripperPart, false);
@@ -177,7 +178,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         .filter(|count| count.origin.at > since)
         .map(|count| (count.origin.at, count.count));
     match count.map(|(at, count)| (at, count.wrapping_sub(before) & 0xFFFF)) {
-        // A count of 1 excludes a second body only when it was read this long after the first one.
+        // A count of 1 excludes a second body only if it was read at least this long after the first count.
         Some((at, 1)) if at.since(*falling.seen.get_or_insert(at)) >= SECOND_BODY => {
             landed(turn, bin);
         }
@@ -191,8 +192,8 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     }
 }
 
-/// Handles a part that the beam has not counted in time: lost if it has left the fingers, still held if the sensor
-/// shows it. Waits while that sensor is unknown.
+/// Handles a part that the beam has not counted in time: the part is lost if it has left the fingers, and still held if
+/// the sensor shows it. Waits while that sensor is unknown.
 fn overdue(turn: &mut Turn, bin: Bin) {
     let falling = turn.ledger.fall();
     if falling.is_some_and(|it| it.has_left) {

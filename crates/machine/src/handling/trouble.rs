@@ -28,11 +28,11 @@ pub enum Trouble {
     NestEmpty,
     /// The beam of a bin counted this number of parts after one release.
     Beam(Bin, u32),
-    /// A part that does not belong to this run.
+    /// A part that does not belong to this run was found in this place.
     Found(Place),
-    /// A part has disappeared from its place.
+    /// A part has disappeared from this place.
     Lost(Place),
-    /// A part left there by an earlier run has disappeared.
+    /// A part that an earlier run left in this place has disappeared.
     Gone(Place),
     /// An earlier run released a part over this bin without a confirmation by its beam.
     FallUnseen(Bin),

@@ -1,4 +1,4 @@
-//! Inputs and outputs of the step machines in one turn.
+//! Inputs and outputs of feed, nests and sorter in one turn.
 
 use super::ledger::Ledger;
 use super::mechanism::{Mechanism, SENSOR_AGE};
@@ -32,7 +32,7 @@ pub struct Turn<'a> {
     pub reference_serials: &'a mut VecDeque<String>,
     /// Serial numbers of the parts of the lot.
     pub serials: &'a mut Serials,
-    /// Ordinal up to which parts are durably recorded.
+    /// Ordinal of the last part whose rows are safely on the disk.
     pub recorded: u64,
     /// True while the sequence goes to rest: no new action begins.
     pub resting: bool,
@@ -54,7 +54,7 @@ impl Turn<'_> {
         self.mechanism.has_arrived(movement, self.now, self.image)
     }
 
-    /// Returns the state of a sensor; none unless its value is valid.
+    /// Returns the state of a sensor; `None` unless its value is valid.
     pub fn input(&self, point: impl Into<DigitalInput>) -> Option<bool> {
         self.image.input(point, self.now, SENSOR_AGE)
     }
@@ -74,8 +74,8 @@ impl Turn<'_> {
             && self.arrived(Move::EscapementHold)
     }
 
-    /// Moves the part from the pocket to the nest; a part of this run counts as the next reference part, as long as one
-    /// is still to come.
+    /// Moves the part from the pocket to the nest. A part of this run becomes the next reference part as long as
+    /// reference parts are due.
     pub fn enter_nest(&mut self, nest: NestId) {
         let reference = match self.ledger.is_pocket_found() {
             true => None,
@@ -105,8 +105,8 @@ impl Turn<'_> {
         self.serials.arrived(self.now, is_of_lot);
     }
 
-    /// Returns true when another part may leave the magazine: a reference part, or one whose serial number needs no
-    /// scan before.
+    /// Returns true when another part may leave the magazine: a reference part is due, or the next part of the lot
+    /// needs no scan or has one.
     pub fn may_release(&self) -> bool {
         !self.reference_serials.is_empty() || self.serials.may_release()
     }

@@ -1,8 +1,8 @@
 //! Watches resting actuators: each must keep showing its end, and never both ends at once.
 //!
-//! A deviation shorter than [`DEBOUNCE`] is a bounce, which only raises the count of bounces. While a deviation is
-//! undecided, no motion begins. An unread sensor is no trouble here; its line reports it. The alarm of the axis drive
-//! is watched too, once the drive has been reset.
+//! A deviation shorter than [`DEBOUNCE`] is a bounce, which only increments a count. While it is open whether a
+//! deviation is a bounce, no motion begins. An unread sensor is no trouble here; its line reports it. The alarm of the
+//! axis drive is watched too, once the drive has been reset.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;
@@ -25,7 +25,7 @@ struct Resting {
 pub struct Watch {
     resting: Vec<Resting>,
     bounces: u64,
-    /// Time at which the axis drive was reset; until then its alarm is already being handled.
+    /// Time at which the axis drive was reset. Before the reset its alarm is not watched, because homing handles it.
     drive_reset: Option<RigTime>,
 }
 
@@ -60,7 +60,7 @@ impl Watch {
         self.drive_reset = Some(at);
     }
 
-    /// Returns true while a deviation is undecided between fault and bounce.
+    /// Returns true while a deviation may be a fault or a bounce.
     pub fn is_undecided(&self) -> bool {
         let mut resting = self.resting.iter();
         resting.any(|it| it.left_since.is_some() || it.both_since.is_some())
@@ -71,7 +71,8 @@ impl Watch {
         self.bounces
     }
 
-    /// Checks the sensors once; reports a deviation that has lasted long enough, and stops watching it.
+    /// Checks the sensors once; reports a deviation that has lasted for the debounce time, and stops watching that
+    /// actuator.
     pub fn look(&mut self, now: RigTime, image: &Image) -> Vec<Trouble> {
         let seen = |point: DigitalIn| image.input(point, now, SENSOR_AGE);
         let mut trouble = Vec::new();
@@ -114,7 +115,7 @@ fn gone(movement: Move) -> Trouble {
     Trouble::LeftEnd(movement)
 }
 
-/// Returns true once a state has lasted for the whole debounce time.
+/// Returns true once the state has lasted for the debounce time; counts a bounce when it ended before.
 fn lasts(since: &mut Option<RigTime>, is_so: bool, now: RigTime, bounces: &mut u64) -> bool {
     match (is_so, *since) {
         (true, Some(from)) => now.since(from) >= DEBOUNCE,

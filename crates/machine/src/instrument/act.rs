@@ -1,8 +1,8 @@
 //! Acts, the steps of a test stage: each takes a few transactions of one line, or one wait.
 //!
-//! A stage lists its acts before it begins; [`Runner`] carries them out and stores the readings. So the order of a
-//! test can be read, printed and replayed, and no stage ever occupies the bus. Acts name wired points and are
-//! independent of the device; the wiring turns them into transactions.
+//! A stage lists its acts before it begins; [`Runner`] carries them out and stores the readings. The order of a test
+//! can therefore be read, printed and replayed, and no stage occupies a bus line. Acts name wired points and are
+//! independent of the kind of device; the wiring turns them into transactions.
 
 use super::readings::{Readings, Unread};
 use crate::rig::image::Image;
@@ -11,9 +11,9 @@ use std::sync::Arc;
 use texts::Message;
 use units::{RigTime, Span, Volt};
 
-/// Longest normal time from the last poll before an awaited event to the end of the write that answers the event: a
-/// poll, a reading, the write. When a retry or a slow line delays the ramp, the ramp ends later by that delay; a ramp
-/// that reverses has run on meanwhile, and needs as long again to return.
+/// Longest normal time from the last poll before an awaited event to the end of the write that reacts to the event: one
+/// poll, one reading, one write. A retry or a slow line delays this write, and with it the end of the ramp that the
+/// write starts. A ramp that reverses has run on during the delay, and needs as long again to return.
 const PROMPT: Span = Span::ms(13);
 
 /// Digital inputs read together and kept as one signal: bit n is input n.
@@ -37,7 +37,7 @@ pub enum Read {
         /// Points that are not read; the readings repeat their last values.
         retained: Vec<Point>,
     },
-    /// Restart check: asks each module with outputs whether it has restarted since the last such check; a restart
+    /// Restart check: asks each module with outputs whether it has restarted since the last such check. A restart
     /// raises an alarm.
     Restarts,
 }
@@ -71,7 +71,8 @@ pub enum Act {
     Ramp(Vec<(AnalogOutput, Volt)>),
     /// Reads points.
     Read(Read),
-    /// Enables only these inputs of their converters; only before a lot.
+    /// Enables these inputs of their converters and no others. This writes EEPROM, so only a calibration does it,
+    /// before a lot.
     Mask(Vec<AnalogInput>),
     /// Stores the current time for [`Act::WaitSinceMark`].
     Mark,
@@ -83,7 +84,7 @@ pub enum Act {
     Wait(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a conversion that began after the mark.
     ConvertSinceMark(Span),
-    /// Reads a word until the point is active or the time is over; records which of the two happened.
+    /// Reads a word until the point is active or the time is over, and records which came first.
     Until {
         /// The awaited input.
         point: DigitalInput,
@@ -92,8 +93,8 @@ pub enum Act {
         /// Longest wait.
         within: Span,
     },
-    /// Reads a word until inputs have these states; if they do not within the time, the runner skips the acts after
-    /// this one.
+    /// Reads a word until all these inputs have their expected states. If they do not in time, the runner skips the
+    /// acts after this one.
     Agree {
         /// The inputs, all of the word, each with its state.
         expected: Vec<(DigitalInput, bool)>,
@@ -104,7 +105,7 @@ pub enum Act {
     },
 }
 
-/// A task for the lines.
+/// A task that the runner gives to the bus lines.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Job {
     /// See [`Act::Set`].
@@ -115,7 +116,7 @@ pub enum Job {
     Read(Vec<Point>),
     /// See [`Read::Restarts`].
     Restarts,
-    /// Sets channel masks of converters; only before a lot.
+    /// See [`Act::Mask`].
     Mask(Vec<AnalogInput>),
 }
 
@@ -124,7 +125,7 @@ pub enum Job {
 pub struct JobDone {
     /// Time at which the last reply of the job was complete.
     pub at: RigTime,
-    /// Reason for a failure (line, address, command, number of tries); none after a success.
+    /// Why the job failed (line, address, command, number of tries); `None` after a success.
     pub trouble: Option<Message>,
 }
 
@@ -152,9 +153,9 @@ pub struct Spent {
     pub settling: Span,
     /// Time for conversions.
     pub conversion: Span,
-    /// Time for contact events, on ramps and timed operations.
+    /// Time spent waiting for contact events, on ramps and in timed operations.
     pub ramp: Span,
-    /// Time that the test would take on a bus without delay: settling, conversions and events alone.
+    /// Time that the test would take if the bus had no delay: settling, conversions and events alone.
     pub bound: Span,
 }
 
@@ -178,13 +179,13 @@ pub struct Runner {
     began: RigTime,
     since: RigTime,
     mark: RigTime,
-    /// Time since the mark, as it would be on a bus without delay.
+    /// Time since the mark if the bus had no delay.
     since_mark: Span,
-    /// Time of the last read in which the awaited point was inactive.
+    /// Time of the last poll that found the awaited point inactive.
     looked: Option<RigTime>,
     /// Earliest time at which the marked event may have happened.
     marked_from: RigTime,
-    /// Delay of the start of the ramp that began after the mark.
+    /// By how much the ramp that began after the mark started late.
     late: Span,
     spent: Spent,
     /// Readings so far.
@@ -217,7 +218,7 @@ impl Runner {
         self.current.is_none() && !self.pending
     }
 
-    /// Makes a runner that begins now with the mark of the runner `before`: a mark remains valid across stages.
+    /// Makes a runner that begins now with the mark of the runner `before`, because a mark remains valid across stages.
     pub fn after(acts: Vec<Act>, now: RigTime, before: &Runner) -> Self {
         let mut runner = Self::new(acts, now);
         runner.mark = before.mark;
@@ -226,7 +227,8 @@ impl Runner {
         runner
     }
 
-    /// Advances as far as possible. `done` reports the requested job, once.
+    /// Advances as far as possible. `done` is the outcome of the job that an earlier step requested; the caller passes
+    /// it once.
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> RunnerState {
         if self.pending {
             let Some(done) = done else {
@@ -349,7 +351,8 @@ impl Runner {
         self.began = self.since;
     }
 
-    /// Stores the readings of the finished job, and moves on unless it still awaits a condition.
+    /// Stores the readings of the finished job, and moves to the next act unless the present one still awaits a
+    /// condition.
     fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), Unread> {
         match self.current.clone() {
             Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,
@@ -423,7 +426,7 @@ impl Runner {
 }
 
 impl Word {
-    /// Returns the state of each input, if all were read just now.
+    /// Returns the state of each input; `None` unless all were read just now.
     pub(super) fn states(&self, image: &Image, now: RigTime) -> Option<Vec<bool>> {
         let inputs = self.inputs.iter();
         inputs.map(|it| image.answered_input(*it, now)).collect()

@@ -1,5 +1,5 @@
-//! Instruments as a procedure uses them: acts, their runner, their readings, and the trace of all samples, as recorded
-//! and as stored.
+//! Instruments as the procedure of a test uses them: acts, the runner that carries them out, their readings, and the
+//! trace of all samples, as recorded and as stored.
 
 pub mod act;
 pub mod curve;

@@ -58,7 +58,7 @@ impl Readings {
         self.samples.iter().filter(move |it| it.point == point)
     }
 
-    /// Stores the values of a finished job. `at`: the current time, and the time of the job's last reply.
+    /// Stores the values of a finished job. `at`: the current time, then the time of the job's last reply.
     ///
     /// # Errors
     /// Fails with the name of a point that has no value.

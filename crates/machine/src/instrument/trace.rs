@@ -1,16 +1,16 @@
 //! The trace of a test, sample by sample: the evidence kept for a rejected part.
 //!
 //! The trace holds analog samples and counts as read, the values commanded to sources and to the traced outputs of a
-//! kind, and words of inputs. A bit signal has one sample at each change and one at the last poll before it, so that
-//! polling for many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of the
-//! default recipe has some 150.
+//! kind, and words of inputs. A signal of bits has one sample at each change and one at the last poll before it, so
+//! that polling for many milliseconds adds only two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of
+//! the default recipe has some 150.
 
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};
 use crate::rig::sample::{CountSample, Quality, Sample};
 use crate::rig::wiring::Wiring;
 use units::{RigTime, Volt};
 
-/// Most samples of one test, all signals together.
+/// Greatest number of samples of one test, all signals together.
 pub const MAX_SAMPLES: usize = 1_000;
 
 /// A signal of the trace, as its point declares it.
@@ -57,7 +57,7 @@ impl Signal {
         }
     }
 
-    /// Returns the signal of an output (0 off, 1 on) or of a word of inputs, a bit each.
+    /// Returns the signal of an output (0 off, 1 on) or of a word of inputs, one bit each.
     pub const fn bits(name: &'static str) -> Self {
         Self {
             name,
@@ -123,7 +123,7 @@ impl Trace {
         self.add(Signal::bits(name), at, f64::from(word));
     }
 
-    /// Adds one analog sample; a masked-out channel has none.
+    /// Adds one analog sample; ignores the blank one of a masked-out channel.
     pub(super) fn input(&mut self, quantity: Quantity, sample: &Sample) {
         if sample.quality == Quality::Blank {
             return;

@@ -1,4 +1,4 @@
-//! The name of a bin, in which a part ends up.
+//! The name of a bin: the container in which a part ends up.
 //!
 //! Bins are data: `[bin]` of `config/rig.toml` lists the bins of a rig, and a kind of device lists the bins it needs.
 //! The machine itself needs two: for good parts and for void parts.

@@ -1,8 +1,8 @@
-//! Checks that the modules on the lines are those of `config/rig.toml`: the requests to every module at start, and the
-//! required answers.
+//! Checks at start that the modules on the lines are those of `config/rig.toml`: the requests to every module, and the
+//! answers that they require.
 //!
-//! All requests are reads. A difference is a [`Mismatch`] that names line, address, module, found and expected value.
-//! Its [`Mismatch::remedy`] writes to the module's EEPROM; set-up and `calibrate` use it, a lot never does.
+//! All requests are reads. A difference is a [`Mismatch`] with line, address, module, found and expected value. Its
+//! [`Mismatch::remedy`] is a write to the module's EEPROM; set-up and `calibrate` send it, a lot never does.
 //!
 //! | request | must be |
 //! |---|---|
@@ -48,7 +48,7 @@ pub struct Mismatch {
     pub found: String,
     /// Value required by the wiring.
     pub expected: String,
-    /// Command that corrects the setting, if there is one; it writes the module's EEPROM.
+    /// Command that corrects the setting by a write to the module's EEPROM; `None` when no command does.
     pub remedy: Option<Command>,
 }
 

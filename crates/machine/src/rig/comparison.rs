@@ -1,7 +1,7 @@
 //! Compares one answer of one module with the wiring.
 //!
-//! The comparison accepts any value in those bits of the format byte that have no setting (mains filter, model codes of
-//! digital modules).
+//! Some bits of the format byte have no setting (mains filter, model codes of digital modules); the comparison accepts
+//! any value in them.
 
 use super::commission::Mismatch;
 use super::model::Model;
@@ -84,7 +84,7 @@ impl Comparison<'_> {
         Some(self.corrected_by(remedy, "format byte", found, expected))
     }
 
-    /// Returns the required format byte; bits without a setting keep the value found.
+    /// Returns the required format byte, with the value found in the bits that have no setting.
     fn wanted_format(&self, found: FormatByte) -> FormatByte {
         const CHECKSUM: u8 = 0x40;
         const FAST: u8 = 0x20;
@@ -167,12 +167,12 @@ impl Comparison<'_> {
         ))
     }
 
-    /// Compares the safe value. A mismatch has no remedy: no single command corrects it, because the module stores its
-    /// present output as the safe value.
+    /// Compares the safe value of an analog output; returns the mismatch, if there is one. The mismatch has no remedy:
+    /// no single command corrects it, because the module stores its present output as the safe value.
     pub(super) fn safe_level(&self, found: Level) -> Option<Mismatch> {
         let safe = self.module.safe_volts;
         let volts = found.in_units(self.module.type_code).unwrap_or(f64::NAN);
-        // Two steps of a 12-bit output.
+        // Two steps of a 12-bit output may differ.
         if (volts - safe).abs() <= 0.005 {
             return None;
         }

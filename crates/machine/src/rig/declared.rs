@@ -110,7 +110,7 @@ impl Declared<'_> {
     }
 }
 
-/// Keeps the first of each name, because two kinds may declare the same point.
+/// Keeps the first point of each name, because two kinds may declare the same point.
 fn unique<T: Copy>(points: impl Iterator<Item = T>, name: impl Fn(T) -> &'static str) -> Vec<T> {
     let mut all: Vec<T> = Vec::new();
     for point in points {

@@ -1,6 +1,6 @@
-//! The output image: the value of every output, and the writes that bring it about.
+//! The output image: the wanted value of every output, and the writes that send it to the modules.
 //!
-//! - Writes are absolute: one command sets all outputs of a module, so the next write makes good a lost one.
+//! - Writes are absolute: one command sets all outputs of a module, so the next write also repairs a lost one.
 //! - Only [`Outputs::apply`], with a motion cleared by the guard, switches an output that moves something.
 //!   [`Outputs::everything_safe`] is the one exception: it has the same effect as the host watchdog and the hard
 //!   emergency stop.
@@ -55,7 +55,7 @@ enum Image {
     /// Digital outputs, bit n = channel n.
     Bits {
         word: u16,
-        /// A word to write before `word`, which makes a rising edge.
+        /// A word to write before `word`, so that `word` makes a rising edge.
         before: Option<u16>,
         width: Width,
     },
@@ -134,7 +134,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Switches the coils of one actuator, towards its working end or its rest end.
+    /// Switches the outputs of one actuator's valve, towards the actuator's working end or its rest end.
     fn stroke(&mut self, actuator: Actuator, work: bool) {
         match actuator {
             Actuator::Escapement => self.switch(DigitalOut::EscapementRelease, work),
@@ -162,7 +162,7 @@ impl Outputs {
         self.prepare_edge(self.wiring.digital_out(DigitalOut::AxisDrive).module);
     }
 
-    /// Inserts, before the next write of the module that starts the axis, the same write with the drive low.
+    /// Inserts a write before the next one of the module that starts the axis: the same values with the drive low.
     fn prepare_edge(&mut self, module: ModuleId) {
         let drive = self.wiring.digital_out(DigitalOut::AxisDrive);
         if drive.module != module {
@@ -198,8 +198,8 @@ impl Outputs {
         }
     }
 
-    /// Sets one of the outputs whose sum is the coil supply. `supply`: its share, V at the supply. Returns the share
-    /// that the nearest step of the output gives.
+    /// Sets one of the outputs whose sum is the coil supply to its share `supply`, volts of the supply. Returns the
+    /// share that the nearest step of the output gives.
     ///
     /// # Errors
     /// Fails for a voltage beyond the range of the output, and then changes nothing.
@@ -267,7 +267,7 @@ impl Outputs {
         self.refresh(module);
     }
 
-    /// Makes the outputs of a module due again, with the edge of the axis drive: after a lost write or a reset.
+    /// Makes the outputs of a module due again after a lost write or a reset, with the rising edge of the axis drive.
     pub fn refresh(&mut self, module: ModuleId) {
         if let Some(output) = &mut self.modules[module.0] {
             output.due = true;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use thiserror::Error;
 
-/// Requirement on a value, in a form that every language can word; `expected` says the same in English.
+/// Requirement on a value, in a form that every language can put into words; `expected` says the same in English.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "code", content = "value", rename_all = "snake_case")]
 pub enum Requirement {
@@ -21,7 +21,7 @@ pub enum Requirement {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{key}: found {found}, expected {expected}")]
 pub struct Fault {
-    /// Path of the setting: `analog_in.coil_voltage.channel`; list items by number from 0.
+    /// Path of the setting, for example `analog_in.coil_voltage.channel`; items of a list have numbers from 0.
     pub key: String,
     /// The value, in words.
     pub found: String,

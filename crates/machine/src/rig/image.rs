@@ -1,8 +1,8 @@
 //! The process image: the last values of each module, with their times.
 //!
-//! It contains no guesses. A point that was never read, or was read too long ago, has no value; after
-//! [`Image::forget`] (module silent or reset) a point has none until the next read. Times are those of the request, so
-//! that no age is understated.
+//! The image contains no guesses. A point that was never read, or was read too long ago, has no value; after
+//! [`Image::forget`] (module silent or reset) a point has none until the next read. The time of a value is that of its
+//! request, so that no age is understated.
 
 use super::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Thermometer};
 use super::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
@@ -222,7 +222,7 @@ impl Image {
         }
     }
 
-    /// Drops all values of a module, which is silent or was reset.
+    /// Drops all values of a module that is silent or was reset.
     pub fn forget(&mut self, module: ModuleId) {
         self.words[module.0] = None;
         self.levels[module.0] = None;
@@ -240,8 +240,8 @@ impl Image {
         std::mem::take(&mut self.resets)
     }
 
-    /// Returns the state of an input that was just requested, as [`Image::input`] does, if it is no older than the
-    /// longest transaction of its line.
+    /// Returns the state of an input that was just requested; `None` when its value is too old to be the answer to that
+    /// request ([`Wiring::answer_max_age`]).
     pub fn answered_input(&self, point: impl Into<DigitalInput>, now: RigTime) -> Option<bool> {
         let point = point.into();
         let line = self
@@ -273,13 +273,14 @@ impl Image {
         self.input(DigitalIn::EmergencyStopOk, now, max_age)
     }
 
-    /// Returns the time at which the state of the emergency-stop contact expires without another read.
+    /// Returns the time at which the state of the emergency-stop contact expires unless it is read again; `None` if it
+    /// was never read.
     pub fn emergency_stop_known_until(&self) -> Option<RigTime> {
         let requested = self.input_at(DigitalIn::EmergencyStopOk)?;
         Some(requested + self.wiring.emergency_stop_max_age())
     }
 
-    /// Returns the time of the last request for a digital input.
+    /// Returns the time of the last answered request for a digital input; `None` without a value.
     pub fn input_at(&self, point: impl Into<DigitalInput>) -> Option<RigTime> {
         self.words[self.wiring.digital_in(point).module.0].map(|word| word.at)
     }

@@ -1,4 +1,4 @@
-//! Converts volts of the coil supply to the level of an analog output, with its calibration.
+//! Converts volts of the coil supply to the level of an analog output, with the calibration of that output.
 
 use super::point::AnalogOutput;
 use super::wiring::{Module, Wiring};
@@ -44,8 +44,8 @@ pub enum SupplyError {
     },
 }
 
-/// Greatest voltage below zero, V at the terminal, that counts as an offset which the output cannot remove: zero is
-/// written instead.
+/// Greatest voltage below zero, V at the terminal, that counts as an offset beyond the reach of the output; the output
+/// then gets zero.
 const UNREACHABLE_OFFSET_V: f64 = 0.02;
 
 impl Wiring {

@@ -8,8 +8,8 @@
 //!   not fit.
 //! - [`commission`]: checks that the modules on the lines are those of `rig.toml`.
 //! - [`query`], [`sample`], [`image`]: commands that read points, and the values read, with their times.
-//! - [`drive`], [`level`], [`supply`]: output values, and the ranges of their amplifier; a motion only after the guard's
-//!   clearance.
+//! - [`drive`], [`level`], [`supply`]: values of the outputs, and the ranges of the supply's amplifier. [`drive`]
+//!   switches an output that moves something only with the guard's clearance.
 //!
 //! All modules are pure: times are arguments, and commands are values that the caller sends.
 

@@ -99,8 +99,8 @@ impl Model {
         self.type_codes().contains(&code)
     }
 
-    /// Returns the type codes that the rig can use: voltage inputs, 0 to 10 V outputs, Pt100 ranges, counting (not
-    /// frequency).
+    /// Returns the type codes that the rig can use: voltage inputs, 0 to 10 V outputs, Pt100 ranges, and for counters
+    /// the counting (not the frequency) mode.
     pub fn type_codes(self) -> &'static [u8] {
         match self {
             Self::I7017 | Self::I7017F | Self::I7017R => &[0x08, 0x09, 0x0A, 0x0B, 0x0C],

@@ -1,4 +1,4 @@
-//! Resolves modules from the settings: names, addresses, and for each exactly the settings that its model has.
+//! Resolves the modules of the settings: names, addresses, and for each module exactly the settings that its model has.
 
 use super::fault::Fault;
 use super::model::{Model, Terminals};

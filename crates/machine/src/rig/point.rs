@@ -4,7 +4,7 @@
 //! channel. Three sources name points:
 //! - the machine: safety, actuators, buttons, axis, lamps. A closed enum; every one must be wired.
 //! - the kinds of device under test: each declares a [`Fixture`]. A rig may lack them.
-//! - the bins: each names the digital input of its beam.
+//! - the bins: each names the digital input of its beam, the light barrier in its chute.
 //!
 //! The wiring resolves a name to a handle ([`DigitalInput`] and its like): an index into its table.
 
@@ -84,7 +84,7 @@ pub struct Quantity {
     pub unit: &'static str,
     /// Resolution of stored values in that unit: a tenth of a step of the converter, or less.
     pub step: f64,
-    /// True when its channel must be enabled from the start, as no act sets its mask.
+    /// True when its channel must be enabled from the start, because no act sets the channel mask of its module.
     pub enabled: bool,
     /// True when the rig divides its gain by the factor of the supply range.
     pub ranged: bool,

@@ -7,7 +7,7 @@ use dcon::{Channel, Command, DataFormat, Digital, InputForm, OutputForm, UpTo};
 use std::collections::BTreeSet;
 
 impl Module {
-    /// Returns the format of the module's readings; `None` unless it measures.
+    /// Returns the format of the module's readings; `None` for a module that measures nothing.
     pub fn input_form(&self) -> Option<InputForm> {
         let format = self.format?;
         if self.model.channels(Terminals::AnalogIn) > 0 {
@@ -19,7 +19,7 @@ impl Module {
         }
     }
 
-    /// Returns the format of the module's levels; `None` unless it has an analog output.
+    /// Returns the format of the module's levels; `None` for a module without analog output.
     pub fn output_form(&self) -> Option<OutputForm> {
         if self.model.channels(Terminals::AnalogOut) == 0 {
             return None;
@@ -68,7 +68,7 @@ impl Wiring {
     }
 
     /// Returns the transactions that read these points, in order, each with its line: one for all digital inputs of a
-    /// module, one scan for several of its analog channels, one for each other point.
+    /// module, one scan for several analog channels of a module, one for each other point.
     pub fn reads(&self, points: &[Point]) -> Vec<(LineId, Command)> {
         let mut requests: Vec<(ModuleId, Command)> = Vec::new();
         for point in points {
@@ -114,7 +114,7 @@ impl Wiring {
         }
     }
 
-    /// Returns the writes that limit the converters of these inputs to exactly these channels. They write EEPROM.
+    /// Returns the writes that enable exactly these inputs of their converters. They write EEPROM.
     pub fn masks(&self, inputs: &[AnalogInput]) -> Vec<(LineId, Command)> {
         let modules: BTreeSet<ModuleId> =
             inputs.iter().map(|it| self.analog_in(*it).module).collect();
@@ -128,7 +128,7 @@ impl Wiring {
         modules.into_iter().map(write).collect()
     }
 
-    /// Returns the channel mask that limits one converter to these inputs; 0 when it has none of them.
+    /// Returns the channel mask that enables exactly these inputs of one converter; 0 when it has none of them.
     pub fn mask_of(&self, module: ModuleId, inputs: &[AnalogInput]) -> u8 {
         let here = inputs.iter().map(|input| self.analog_in(*input));
         let here = here.filter(|at| at.module == module);

@@ -1,11 +1,11 @@
-//! The worst-case reaction to the emergency-stop contact, derived from the wiring.
+//! The worst-case reaction time to the emergency-stop contact, derived from the wiring.
 //!
 //! Every second transaction of the contact's line reads its module, whatever writes and beam counts wait. In the worst
 //! case the contact opens just after a read. The bound then adds up:
 //!
 //! - the remainder of that poll: the answer, its repetition and the answer to a request for the module's name, each at
-//!   the last moment. A line asks for all three after a module was silent, because its late reply could pass for the
-//!   contact's,
+//!   the last moment. A line asks for all three after any of its modules was silent, because the late reply of that
+//!   module could be taken for the contact's,
 //! - one other transaction, the longest of that line, which fails: a first answer at the last moment, which the line
 //!   does not trust yet and therefore asks for again, a time-out, the request for the silent module's name, also
 //!   unanswered, and a wait for silence that a late reply breaks once,
@@ -33,7 +33,7 @@ const LONGEST_DIGITAL_REPLY: u64 = 12;
 const TURNAROUND: u64 = 2;
 /// Characters of the longest reply of any module: eight readings of seven characters, with lead, checksum and CR.
 const LONGEST_ANALOG_REPLY: u64 = 60;
-/// Share of the digital allowance from which on lateness of the computer explains a missing reply.
+/// Lateness of the computer from which it explains a missing reply, as a share of the digital allowance.
 const EXPLAINS: f64 = 0.5;
 
 impl Wiring {
@@ -50,19 +50,20 @@ impl Wiring {
         self.emergency_stop_max_age() + made_safe.unwrap_or_default()
     }
 
-    /// Returns the time that is left between [`Wiring::longest_reaction`] and the reaction that the plant accepts. A wait
-    /// that ends late during the reaction lengthens it by at most its lateness.
+    /// Returns the time left between [`Wiring::longest_reaction`] and the reaction time that the plant accepts. A wait
+    /// that ends late during the reaction lengthens the reaction by at most its lateness.
     pub fn reaction_slack(&self) -> Span {
         let accepted = Span::seconds(self.safety.estop_reaction_ms / 1000.0);
         Span(accepted.0.saturating_sub(self.longest_reaction().0))
     }
 
-    /// Returns the lateness of the computer that explains a missing reply: half of what a digital module may take.
+    /// Returns the lateness of the computer from which it explains a missing reply: half of the time that a digital
+    /// module may take.
     pub fn explaining_lateness(&self) -> Span {
         Span::seconds(EXPLAINS * self.bus.digital_allowance_ms / 1000.0)
     }
 
-    /// Returns the longest time from the decision to make the outputs safe until the last write on a line.
+    /// Returns the longest time from the decision to make the outputs safe to the end of the last write on a line.
     fn longest_writing(&self, line: LineId) -> Span {
         let busy = match line == self.emergency_stop_line() {
             true => Span(self.longest_failure(line).0 - self.confirmed(line).0),
@@ -74,8 +75,8 @@ impl Wiring {
         writes.fold(busy, |time, _| time + write)
     }
 
-    /// Returns the age at which the state of the emergency-stop contact expires: by then the next answer must have
-    /// come, even after one other transaction in between.
+    /// Returns the age at which the state of the emergency-stop contact expires. By then the answer to the next poll
+    /// must have come, even after one other transaction in between.
     pub fn emergency_stop_max_age(&self) -> Span {
         let line = self.emergency_stop_line();
         self.confirmed(line) + self.longest_failure(line) + self.confirmed(line)
@@ -136,7 +137,7 @@ impl Wiring {
     }
 }
 
-/// Rejects a wiring whose reaction is slower than the plant accepts.
+/// Rejects a wiring whose reaction takes longer than the plant accepts.
 pub(super) fn check_reaction(wiring: &Wiring) -> Result<(), Fault> {
     let accepted_ms = wiring.safety.estop_reaction_ms;
     let worst_ms = wiring.longest_reaction().as_seconds() * 1000.0;

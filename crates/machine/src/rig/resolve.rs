@@ -3,8 +3,8 @@
 //! The resolution checks whatever involves more than one key: every point is one of the machine, one that a kind of
 //! device declares, or the beam of a bin; it names an existing module, a channel of it, and terminals of the right
 //! kind; no two points share a terminal and no two modules an address on one line; a module has exactly the settings of
-//! its model; the axis has one point for each place; the ranges of the supply have codes of their own; the emergency
-//! stop acts in time.
+//! its model; the axis has one point for each place; the codes of the supply ranges differ; the emergency stop acts in
+//! time.
 
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
@@ -126,7 +126,7 @@ struct TerminalsInUse<'a> {
 }
 
 impl TerminalsInUse<'_> {
-    /// Reserves the terminal of `key`; fails with the reason why it cannot.
+    /// Reserves the terminal of `key`; fails with the reason why the terminal cannot be used.
     fn take(
         &mut self,
         key: &str,
@@ -278,7 +278,7 @@ fn check_ports(lines: &[Line]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks that each beam is on an event counter, because a falling part is too quick for a scan.
+/// Checks that each beam is wired to an event counter, because a falling part is too quick for a scan.
 fn check_beams(wiring: &Wiring, settings: &RigSettings) -> Result<(), Fault> {
     for bin in wiring.axis.bins() {
         let beam = wiring.axis.beam(bin);
@@ -299,7 +299,7 @@ fn check_beams(wiring: &Wiring, settings: &RigSettings) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks that a channel whose mask no act changes is enabled from the start.
+/// Checks that a channel is enabled from the start if no act sets its mask.
 fn check_masks(wiring: &Wiring) -> Result<(), Fault> {
     for (point, at) in wiring.analog_in.iter().filter(|(point, _)| point.enabled) {
         let module = wiring.module(at.module);

@@ -17,7 +17,7 @@ pub struct Origin {
     pub channel: Channel,
     /// The command that read the sample.
     pub command: Command,
-    /// The reply as received, lead included; checksum and CR only if the line passes them on.
+    /// The reply as received, with its leading character; with checksum and CR only if the line passes them on.
     pub raw: Arc<str>,
     /// Time of the request. The converted voltage may be older by the time of one conversion, and is never newer than
     /// the reply.
@@ -71,7 +71,7 @@ pub struct Sample {
     pub point: AnalogPoint,
     /// Value in the unit of the point (V, A, degrees Celsius), before correction; NaN unless the quality is good.
     pub value: f64,
-    /// Volts at the terminal (degrees Celsius of a thermometer); NaN unless the quality is good.
+    /// Volts at the terminal, for a thermometer degrees Celsius; NaN unless the quality is good.
     pub terminal_volts: f64,
     /// Validity of the value.
     pub quality: Quality,
@@ -80,7 +80,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Returns the value of a good sample.
+    /// Returns the value of a sample of good quality, else `None`.
     pub fn good(&self) -> Option<f64> {
         match self.quality {
             Quality::Good if self.value.is_finite() => Some(self.value),

@@ -25,7 +25,7 @@ pub struct RigSettings {
     /// Analog outputs by point name.
     #[serde(default)]
     pub analog_out: BTreeMap<String, AnalogOutSettings>,
-    /// Ranges of the supply by name; none where it has only one.
+    /// Ranges of the supply by name; empty where the supply has only one.
     #[serde(default)]
     pub supply_range: BTreeMap<String, SupplyRangeSettings>,
     /// Gated counters by point name.
@@ -57,13 +57,13 @@ pub struct LineSettings {
 /// Times and counts common to all lines.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct BusSettings {
-    /// Time that a digital, counter or analog output module may take to reply, ms, without wire time.
+    /// Time that a digital, counter or analog output module may take to reply, ms; excludes the time on the wire.
     pub digital_allowance_ms: f64,
-    /// Time that an analog input module may take to reply, ms, without wire time.
+    /// Time that an analog input module may take to reply, ms; excludes the time on the wire.
     pub analog_allowance_ms: f64,
     /// Most tries of a repeatable command.
     pub tries: u8,
-    /// Period of the host OK broadcast, ms.
+    /// Period of the broadcast "host OK", which feeds the host watchdogs, ms.
     pub heartbeat_ms: f64,
     /// Time-out of the output modules' host watchdog, ms; the modules count tenths of a second.
     pub host_watchdog_ms: f64,
@@ -74,7 +74,8 @@ pub struct BusSettings {
 /// Demands of the plant on the emergency stop.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct SafetySettings {
-    /// Longest accepted time from the opening of the emergency-stop contact to the reply of the last command that switches an output off, ms.
+    /// Longest accepted time from the opening of the emergency-stop contact to the reply of the last command that
+    /// switches an output off, ms.
     pub estop_reaction_ms: f64,
 }
 
@@ -85,7 +86,7 @@ pub struct ModuleSettings {
     pub line: String,
     /// Two hexadecimal digits.
     pub address: String,
-    /// Model name, `I-7017F`.
+    /// Name of the model, for example `I-7017F`.
     pub model: String,
     /// Type code TT of the configuration word, two hexadecimal digits.
     #[serde(rename = "type")]
@@ -133,7 +134,8 @@ pub struct AnalogOutSettings {
 pub struct SupplyRangeSettings {
     /// Bits of the two outputs that select the range; the two inputs read back the same bits.
     pub code: u8,
-    /// Multiplies the gains of the sources and divides those of the inputs behind the amplifier.
+    /// Factor by which the range multiplies the gains of the sources and divides those of the inputs behind the
+    /// amplifier.
     pub factor: f64,
     /// Highest voltage of the supply, V.
     pub max_v: f64,

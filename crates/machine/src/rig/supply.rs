@@ -1,7 +1,7 @@
 //! Ranges of the supply: an amplifier whose gain two outputs of the rig select and two inputs read back.
 //!
-//! The gains in `config/rig.toml` hold at factor 1. A lot runs in one range: [`Wiring::in_range`] returns the wiring
-//! with the gains of that range, so that levels, readings and rates need no range of their own.
+//! The gains in `config/rig.toml` are those at factor 1. A lot runs in one range: [`Wiring::in_range`] returns the
+//! wiring with the gains of that range, so that the code for levels, readings and rates needs to know no range.
 
 use super::fault::Fault;
 use super::point::{DigitalInput, DigitalOutput};
@@ -22,11 +22,12 @@ pub const SWITCHING_TIMEOUT: Span = Span::ms(500);
 /// One range of the supply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupplyRange {
-    /// Name in `rig.toml`; on a rig without ranges the name of the module of its strongest source.
+    /// Name in `rig.toml`; on a rig without ranges the name of the module that is its strongest source.
     pub name: String,
     /// Bits that select the range and read it back.
     pub code: u8,
-    /// Multiplies the gains of all sources, and divides those of the inputs behind the amplifier.
+    /// Factor by which the range multiplies the gains of all sources, and divides those of the inputs behind the
+    /// amplifier.
     pub factor: f64,
     /// Highest voltage of the supply.
     pub max: Volt,
@@ -74,7 +75,7 @@ pub struct RangeSelector {
 }
 
 impl RangeSelector {
-    /// Returns how the code read back differs from that of `range`; `None` when they agree.
+    /// Returns how the range that was read back differs from `range`; `None` when they agree.
     pub fn mismatch(&self, range: &SupplyRange, read_back: u8) -> Option<RangeMismatch> {
         let name = self.names.get(&read_back).cloned();
         (read_back != range.code).then(|| RangeMismatch {
@@ -104,7 +105,8 @@ pub fn code_of(states: [bool; 2]) -> u8 {
 }
 
 impl SupplyRange {
-    /// Returns true for a range of `rig.toml`, which two outputs select; false on a rig without ranges.
+    /// Returns true for a range of `rig.toml`, which two outputs select; false for the only range of a rig without
+    /// ranges.
     pub fn is_selected(&self) -> bool {
         self.max_current.is_some()
     }
@@ -123,10 +125,10 @@ impl SupplyRange {
 }
 
 impl SupplyDemand {
-    /// Returns the smallest range that gives voltage and current; panics for a rig without sources.
+    /// Returns the smallest range that meets the demand; panics for a rig without sources.
     ///
     /// # Errors
-    /// Fails with the key that needs too much, and the limit of the rig.
+    /// Fails with the key of the recipe that needs too much, and the limit of the rig.
     pub fn range<'a>(&self, wiring: &'a Wiring) -> Result<&'a SupplyRange, Fault> {
         let enough = |range: &&SupplyRange| self.volts <= range.max;
         let mut ranges = wiring.supply_ranges.iter().filter(enough);
@@ -163,7 +165,7 @@ impl SupplyDemand {
 }
 
 impl Wiring {
-    /// Returns this wiring with the gains that hold in `range`.
+    /// Returns this wiring with the gains that hold in `range`; panics if it has those of a range already.
     pub fn in_range(&self, range: &SupplyRange) -> Self {
         assert!(self.supply_range.is_none(), "gains of one range already");
         let mut ranged = self.clone();
@@ -192,7 +194,8 @@ impl Wiring {
     }
 }
 
-/// Resolves the ranges of `rig.toml`, smallest first; without any, the range of the strongest source at factor 1.
+/// Resolves the ranges of `rig.toml`, smallest first. Without ranges there, returns the range of the strongest source,
+/// at factor 1.
 pub(super) fn resolve_ranges(
     settings: &RigSettings,
     modules: &[Module],
@@ -227,7 +230,8 @@ pub(super) fn resolve_ranges(
     Ok(ranges)
 }
 
-/// Returns the source with the highest full scale: its module, and volts of the supply at factor 1.
+/// Returns the source with the highest full scale: its module, and this full scale in volts of the supply at factor 1;
+/// `None` without a source.
 fn strongest<'a>(settings: &'a RigSettings, modules: &[Module]) -> Option<(&'a str, Volt)> {
     let full_scale = |name: &str| {
         let module = modules.iter().find(|module| module.name == name)?;

@@ -292,7 +292,7 @@ impl Wiring {
         all.map(move |(name, terminal)| (name, terminal.read(bits)))
     }
 
-    /// Returns the lines with points of a fixture, which take the measuring jobs; in order, each once.
+    /// Returns the lines with points of a fixture, on which measuring jobs run; in order, each once.
     pub fn measuring_lines(&self) -> Vec<LineId> {
         let inputs = self.digital_in[DigitalIn::COUNT..self.before_beams].iter();
         let outputs = self.digital_out[DigitalOut::COUNT..].iter();
@@ -312,8 +312,8 @@ impl Wiring {
         self.digital_in(DigitalIn::EmergencyStopOk).module
     }
 
-    /// Returns the most tries of a repeatable command: one on the line of the emergency stop, where a repetition
-    /// delays the next read of the contact and the next scan repeats the command anyway.
+    /// Returns how often a line tries a repeatable command. The line of the emergency stop tries it once, because a
+    /// repetition would delay the next read of the contact, and the next scan repeats the command anyway.
     pub fn tries_on(&self, line: LineId) -> u8 {
         if self.module(self.emergency_stop_module()).line == line {
             1

@@ -21,7 +21,7 @@ pub enum Activity {
     Running,
     /// Handles reference parts.
     ReferenceParts,
-    /// Stays in this PackML state, without an activity of its own.
+    /// Rests in this PackML state and does nothing else.
     Resting(State),
 }
 
@@ -42,7 +42,7 @@ impl Activity {
         code.to_owned()
     }
 
-    /// Returns the stage of the test: the key of its text in the family `stage`.
+    /// Returns the stage of the test, which is the key of its text in the family `stage`; `None` without a test.
     pub fn stage(self) -> Option<&'static str> {
         let Self::Testing(stage) = self else {
             return None;
@@ -50,7 +50,7 @@ impl Activity {
         Some(stage)
     }
 
-    /// Returns the words for a view: the code with blanks, followed by the stage.
+    /// Returns the words for a view: the code with blanks instead of underscores, followed by the stage.
     pub fn name(self) -> String {
         let code = self.code().replace('_', " ");
         match self.stage() {

@@ -7,10 +7,11 @@
 //! | returned | no | no |
 //! | shelved | either | hidden until its time is over |
 //!
-//! An acknowledged alarm without cause leaves the list. Alarms of one code share a line when they have the same
-//! distinction: parts lost in two places take two lines. A listed alarm whose cause comes again raises its count; while
-//! the cause lasts, only the alarms of [`PER_PART`] do. So the counts of the list equal the occurrences in the history.
-//! The first active alarm is the *first-out*, and remains so until no alarm is active. Acknowledging resets nothing.
+//! An acknowledged alarm without cause leaves the list. Alarms of one code share a line if the argument that
+//! distinguishes them (for example the place of a lost part) is the same. A listed alarm whose cause returns raises its
+//! count; while the cause lasts, only the alarms of [`PER_PART`] raise theirs. So the counts of the list equal the
+//! occurrences in the history. The first active alarm is the *first-out*, and remains so until no alarm is active.
+//! Acknowledging resets nothing.
 
 use super::catalogue::{ClearedBy, Entry, PER_PART, Reaction};
 use super::trouble::Alarm;
@@ -41,7 +42,7 @@ pub struct ListedAlarm {
     pub count: u32,
     /// True when no other alarm was active before it.
     pub first_out: bool,
-    /// End of the time for which the alarm is shelved; none while it is not shelved.
+    /// End of the time for which the alarm is shelved; `None` while it is not shelved.
     pub shelved_until: Option<RigTime>,
     /// True for an alarm of an earlier run, whose times do not apply to this run.
     pub inherited: bool,
@@ -71,13 +72,13 @@ impl Annunciator {
         &self.listed
     }
 
-    /// Returns true once after every change.
+    /// Returns true if the list has changed since the last call.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
     }
 
-    /// Lists, as returned, an alarm that was unacknowledged when the program ended; if the cause remains, this run
-    /// detects it again. A shelved alarm stays shelved.
+    /// Lists an alarm of an earlier run as returned, because it was unacknowledged when that run's program ended; if
+    /// the cause remains, this run detects it again. A shelved alarm stays shelved.
     pub fn inherit(&mut self, alarm: Alarm, count: u32, shelved_until: Option<RigTime>) {
         self.changed = true;
         self.listed.push(ListedAlarm {
@@ -134,7 +135,7 @@ impl Annunciator {
         true
     }
 
-    /// Clears the alarms that a sensor clears, except those that `there` contains: their cause remains.
+    /// Clears the alarms that a sensor clears, except those in `there`, whose cause remains.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
             let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;
@@ -211,7 +212,8 @@ impl Annunciator {
             .find(|one| one.is_active() && one.entry().reaction == stops)
     }
 
-    /// Returns the first active alarm with the reaction `Abort` whose sensor still shows the cause.
+    /// Returns the first active alarm with the reaction `Abort` that only a sensor can clear, whose cause the sensor
+    /// thus still shows.
     pub fn still_sensed(&self) -> Option<&ListedAlarm> {
         self.listed.iter().find(|one| {
             let entry = one.entry();

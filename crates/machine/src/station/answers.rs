@@ -96,7 +96,7 @@ impl Station {
         let (commands, stuck) = self.alarms.panel.look(now, image, self.machine.state);
         for command in commands {
             let answer = self.order(Order::Command(command), now, output);
-            // A stop ends an unattended run, because no person could restart the machine.
+            // A stop ends an unattended run, because no person is there to restart the machine.
             self.machine.stopping |= command == Command::Stop && !self.plan.attended;
             output.pressed.push((command, answer));
         }
@@ -146,7 +146,7 @@ impl Station {
         Ok(())
     }
 
-    /// Checks that the operator may leave the lot as it is, so that another lot can begin.
+    /// Checks that the operator may leave the lot unfinished, so that another lot can begin.
     ///
     /// # Errors
     /// Fails with the reason when the operator must not leave the lot.
@@ -175,7 +175,7 @@ impl Station {
         }
     }
 
-    /// Checks that the lot may end before its count.
+    /// Checks that the lot may end before its count is reached.
     ///
     /// # Errors
     /// Fails with the reason when the lot must not end yet.
@@ -183,7 +183,8 @@ impl Station {
         self.may(Command::Complete).or_else(|_| self.may_leave())
     }
 
-    /// Checks that no scanned part of an earlier run may lie in the magazine, where it would get the next number.
+    /// Checks that no part that was scanned in an earlier run may lie in the magazine, where it would get the next
+    /// number.
     fn may_scan(&self) -> Result<(), Refused> {
         let mut listed = self.alarms.annunciator.listed().iter();
         match listed.find(|it| it.alarm.code == AlarmCode::ScansDropped) {
@@ -237,13 +238,13 @@ impl Station {
         Ok(())
     }
 
-    /// Records that the motion that has just begun is a jog: the machine is no longer homed.
+    /// Records that the motion that has just begun is a jog, after which the machine is no longer homed.
     pub fn jogged(&mut self, movement: Move) {
         self.line.homed = false;
         self.line.mechanism.driven_by_hand(movement);
     }
 
-    /// Returns how the last jog ended, but only once; `None` while it moves.
+    /// Returns how the last jog ended, once; `None` while it moves, or without a jog.
     pub fn take_jog_end(&mut self, now: RigTime, image: &Image) -> Option<HandEnd> {
         self.line.mechanism.take_hand_end(now, image)
     }
@@ -269,7 +270,7 @@ impl Station {
     }
 }
 
-/// Fails with the alarm whose cause has not gone, if there is one.
+/// Fails with the alarm whose cause remains, if there is one.
 fn gone(cause: Option<&ListedAlarm>) -> Result<(), Refused> {
     match cause {
         Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),

@@ -1,4 +1,4 @@
-//! Every alarm by its code, with the reaction of the machine and what clears it.
+//! Every alarm by its code, with the reaction of the machine and with what clears the alarm.
 //!
 //! The catalogue of texts holds cause, consequence and action as attributes of the code.
 
@@ -29,7 +29,7 @@ pub enum ClearedBy {
     Sensor,
     /// The order `clear`, `unhold` or `reset`.
     Operator,
-    /// The alarm itself, because it reports an instant.
+    /// Nothing: the alarm reports an instant, and its cause is over at once.
     Itself,
 }
 
@@ -42,8 +42,8 @@ pub struct Entry {
     pub cleared_by: ClearedBy,
 }
 
-/// Declares [`AlarmCode`], a row per code: after `by` the argument that distinguishes its alarms, after `of` the type
-/// of its subject (both optional), the id of its text, [`Reaction`], [`ClearedBy`].
+/// Declares [`AlarmCode`], one row per code: after `by` the argument that distinguishes its alarms (optional), after
+/// `of` the type of its subject (optional), the id of its text, [`Reaction`], [`ClearedBy`].
 macro_rules! codes {
     ($($(#[$doc:meta])* $code:ident $(by $argument:literal)? $(of $subject:ty)? = $id:literal, $reaction:ident, $by:ident;)+) => {
         /// Code of an alarm, stable over versions.
@@ -51,7 +51,7 @@ macro_rules! codes {
         pub enum AlarmCode { $($(#[$doc])* $code $(($subject))?,)+ }
 
         impl AlarmCode {
-            /// Returns every code, with each of its subjects (actuators or wearing parts).
+            /// Returns every code, with each of its subjects (actuators, wearing parts or promises).
             pub fn all() -> impl Iterator<Item = Self> {
                 [$(each!($code $($subject)?)),+].concat().into_iter()
             }
@@ -71,7 +71,8 @@ macro_rules! codes {
                 }
             }
 
-            /// Returns the name of the argument that distinguishes alarms of this code, such as `place` of a lost part.
+            /// Returns the name of the argument that distinguishes alarms of this code, for example `place` of a lost
+            /// part; `None` for a code whose alarms share one line.
             pub(super) fn distinguished_by(self) -> Option<&'static str> {
                 $($(if matches!(self, Self::$code { .. }) {
                     return Some($argument);
@@ -79,7 +80,8 @@ macro_rules! codes {
                 None
             }
 
-            /// Returns the name of the actuator or of the wearing part that the code carries.
+            /// Returns the name of the subject that the code carries (actuator, wearing part or promise), if it carries
+            /// one.
             fn subject(self) -> Option<&'static str> {
                 $($(if let Self::$code(subject) = self {
                     return Some(<$subject>::name(subject));

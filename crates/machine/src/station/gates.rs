@@ -1,4 +1,4 @@
-//! Gates of a lot: conditions for the test of the next part, in addition to those of the machine.
+//! Gates of a lot: conditions on the lot for the test of the next part, in addition to those of the machine.
 //!
 //! - *First article*: the first parts get confirmation measurements, so that every result is a mean.
 //! - *Reference check*: compares a reference part, measured like a first article, with its certificate: at the start on
@@ -35,10 +35,10 @@ const MIN_JUDGED: u64 = 20;
 pub struct LotSettings {
     /// Number of parts at the beginning of a run that get confirmation measurements.
     pub first_article_parts: u64,
-    /// Greatest share of failed parts, % of the size of the lot.
+    /// Greatest share of failed parts, % of the size of the lot; without it the gate does not apply.
     #[serde(rename = "discard_limit_pct")]
     pub reject_rate_limit_pct: Option<f64>,
-    /// When a reference part is checked.
+    /// When the machine checks a reference part.
     #[serde(rename = "golden_check")]
     pub reference_check: CheckSettings,
     /// Use counts at which probes and jaws count as worn, and the limit of the probe contact.
@@ -50,13 +50,13 @@ pub struct LotSettings {
     pub serial: Option<SerialSettings>,
 }
 
-/// When a reference part is checked.
+/// When the machine checks a reference part.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct CheckSettings {
     /// Before the first part of a run on a stored calibration.
     pub at_start: bool,
-    /// Parts of the lot from one check to the next.
+    /// Number of parts of the lot from one check to the next.
     pub after_parts: Option<u64>,
     /// Hours from one check to the next.
     pub after_h: Option<f64>,
@@ -86,15 +86,16 @@ pub struct WearSettings {
 pub(super) struct Gates {
     /// True while only reference parts are tested, until one agrees with its certificate.
     checking: bool,
-    /// Time of the last good check, and number of parts of the lot that had entered the nest by then.
+    /// Time of the last good check, and number of parts of the lot that had entered the nest by then; `None` before the
+    /// first.
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,
     /// True once the reject-rate limit has raised its alarm.
     reject_rate_reported: bool,
-    /// Counters that have raised their alarm.
+    /// Wearing parts whose counter has raised its alarm.
     worn: Vec<Wearing>,
-    /// True once the probe contact has raised its alarm, until its mean is below the limit.
+    /// True from the alarm of the probe contact until its mean is below the limit again.
     fouled: bool,
 }
 
@@ -104,7 +105,7 @@ impl Gates {
         self.checking
     }
 
-    /// Records a good check at `now`.
+    /// Records a good check at `now`, when `parts` parts of the lot had entered the nest.
     pub(super) fn good(&mut self, now: RigTime, parts: u64) {
         let before = self.good.map_or(0, |(_, parts)| parts);
         assert!(parts >= before, "fewer parts of the lot than before");
@@ -144,14 +145,15 @@ impl Gates {
 }
 
 impl Station {
-    /// Plans a reference part as the next part; only reference parts are judged until one agrees with its certificate.
+    /// Plans a reference part as the next part. From now on only reference parts are judged, until one agrees with its
+    /// certificate.
     pub(super) fn begin_check(&mut self) {
         let serials = &self.plan.reference_serials;
         self.lot.plan_references(&serials[..serials.len().min(1)]);
         self.lot.gates.checking = !serials.is_empty();
     }
 
-    /// Begins a reference check that is due; raises an alarm for an expired calibration.
+    /// Begins a reference check if one is due; if the calibration has expired, raises the alarm for it.
     pub(super) fn begin_due_check(&mut self, now: RigTime, output: &mut TurnOutput) {
         let executes = self.machine.state == State::Execute;
         assert!(executes, "a reference check outside Execute");
@@ -167,7 +169,7 @@ impl Station {
         }
         let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.reference_check);
         if self.lot.gates.good.is_none() {
-            // The calibration or the check at the start counts as the first good check.
+            // The calibration, or the check at the start, counts as the first good check.
             self.lot.gates.good(now, parts);
         } else if self.lot.gates.due_by_parts(settings, parts) {
             self.begin_check();
@@ -187,7 +189,7 @@ impl Station {
         !self.lot.reference_left.is_empty() || !self.device.is_calibrated()
     }
 
-    /// Returns true when every result of the part in the nest gets confirmation measurements.
+    /// Returns true when confirmation measurements repeat every result of the part in the nest.
     pub(super) fn is_thorough(&self) -> bool {
         match self.line.ledger.part(Place::NEST).map(|part| &part.role) {
             Some(PartRole::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
@@ -248,7 +250,7 @@ impl Station {
         (self.lot.gates.fouled && !raised).then(|| Alarm::probe_contact(mean, limit_ohm))
     }
 
-    /// Returns the alarms of counters at their limit, each once.
+    /// Returns the alarms of the counters that have reached their limit, each once.
     pub(super) fn worn(&mut self) -> Vec<Alarm> {
         let uses = self.plan.worn.with(self.line.mechanism.uses());
         let limits = &self.plan.lot.wear;

@@ -27,7 +27,7 @@ impl Station {
         self.device.conclude_references(&runner.readings, made)
     }
 
-    /// Discards the calibration: the next start measures references and reference parts again.
+    /// Discards the calibration, so that the next start measures references and reference parts again.
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
@@ -66,7 +66,7 @@ impl Station {
         output.record.checked = outcome.checked;
     }
 
-    /// Returns the serial number of the reference part in the nest, unless it serves a check.
+    /// Returns the serial number of the reference part in the nest; `None` for one that only serves a check.
     pub(super) fn teaching(&self) -> Option<&str> {
         match self.line.ledger.part(Place::NEST).map(|part| &part.role) {
             Some(PartRole::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),

@@ -20,9 +20,9 @@ pub(super) struct Line {
     pub mechanism: Mechanism,
     pub recovery: Recovery,
     pub serials: Serials,
-    /// True while every actuator is homed; a jog and the safe state reset it.
+    /// True while every actuator is homed; a jog and safe outputs end this.
     pub homed: bool,
-    /// Beams that are dark, each with the time since which it has been dark.
+    /// Beams that are dark (interrupted), each with the time since which it has been dark.
     pub dark: Vec<(DigitalInput, RigTime)>,
     /// Motions that wait for the order `step`, in maintenance.
     pub stepwise: VecDeque<Move>,
@@ -105,8 +105,8 @@ impl Line {
         self.mechanism.situation(parts, now, image)
     }
 
-    /// Holds motions back until every end sensor is debounced, because for an undecided one the guard assumes the whole
-    /// stroke.
+    /// Holds motions back until every end sensor is debounced, because the guard assumes the whole stroke of an
+    /// actuator whose sensor is undecided.
     pub fn postpone(&mut self, now: RigTime, output: &mut TurnOutput) {
         self.postponed.append(&mut output.rig.motions);
         if self.mechanism.is_undecided() {
@@ -127,8 +127,8 @@ impl Line {
             && self.mechanism.moving().next().is_none()
     }
 
-    /// Returns true when no part is inside and every row is durable; unless `pocket`, a part of this run may wait in
-    /// the pocket.
+    /// Returns true when no part is inside and every row is safely on the disk. If `pocket` is false, a part of this
+    /// run may still wait in the pocket.
     pub fn is_finished(&self, pocket: bool, recorded: u64, output: &TurnOutput) -> bool {
         let ledger = &self.ledger;
         let empty = ledger.each().all(|(place, _)| place == Place::Pocket);

@@ -12,9 +12,9 @@ pub(super) struct Machine {
     /// Time at which the state was entered; zero before the first turn.
     pub entered: RigTime,
     pub mode: Mode,
-    /// Time of the first turn, or of the first turn after the modules were verified.
+    /// Time of the first turn since the start, or since the modules were verified last.
     pub began: Option<RigTime>,
-    /// True before the first command, which the program itself gives.
+    /// True until the first command, which the program itself gives.
     pub fresh: bool,
     /// True when the run ends once the parts inside are finished.
     pub stopping: bool,

@@ -13,13 +13,13 @@
 //!    [`crate::handling::feeder`];
 //! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to their waiting positions.
 //!
-//! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists it until its
-//! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
-//! void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
+//! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists the alarm until
+//! its cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part that was
+//! inside is void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
 //!
-//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false)
-//! it also ends with an alarm that needs a person. The station resets and starts a lot by itself; between lots
-//! ([`Plan::between_lots`]) it acts only on orders.
+//! A run ends with its lot, or when a person leaves the lot for another one. An unattended run ([`Plan::attended`] is
+//! false) also ends with an alarm that needs a person. The station resets the machine and starts its lot by itself;
+//! between lots ([`Plan::between_lots`]) it acts only on orders.
 
 mod activity;
 pub mod annunciator;
@@ -72,7 +72,8 @@ use units::RigTime;
 pub struct Plan {
     /// Number of parts of the lot; `None` for an endless lot.
     pub count: Option<u64>,
-    /// Serial numbers of the reference parts at the head of the magazine, used without a calibration.
+    /// Serial numbers of the reference parts, in the order of the magazine. A run without a calibration begins with all
+    /// of them; a reference check uses the first.
     pub reference_serials: Vec<String>,
     /// True with a valid calibration: the run measures neither references nor reference parts.
     pub calibrated: bool,
@@ -134,7 +135,7 @@ struct LotControl {
 }
 
 impl LotControl {
-    /// Plans these reference parts next, in place of those that were planned.
+    /// Plans these reference parts next, instead of those planned before.
     fn plan_references(&mut self, serials: &[String]) {
         let more = serials.len().saturating_sub(self.reference_left.len());
         self.reference_planned += more as u64;
@@ -198,7 +199,7 @@ impl Station {
         &self.line.ledger
     }
 
-    /// Returns the prompt that waits for its answer.
+    /// Returns the prompt that waits for its answer, if there is one.
     pub fn prompt(&self) -> Option<&Prompt> {
         self.prompts.open()
     }
@@ -286,7 +287,7 @@ impl Station {
         self.machine.turn(now);
         let ordered = inputs.orders.len();
         if inputs.verified {
-            // Samples from before the verification are stale and raise no alarm.
+            // Samples from before the verification are stale, and must raise no alarm.
             (self.alarms.sensed, self.machine.began) = (false, Some(now));
         }
         self.machine.began.get_or_insert(now);

@@ -16,7 +16,7 @@ pub enum Order {
     Command(Command),
     /// Changes the mode.
     Mode(Mode),
-    /// One motion by hand, through the same guard as every other.
+    /// Drives one motion by hand; the guard judges it like any other.
     Jog(Move),
     /// Drives the next motion of the sequence, in maintenance.
     Step,
@@ -38,7 +38,7 @@ pub enum Order {
     Answer(String, String),
 }
 
-/// Returns the shelving time in minutes: 1 to 480, 30 when the order names none.
+/// Returns the shelving time in minutes, limited to 1 to 480; 30 when the order names none.
 pub fn shelf_minutes(requested: Option<u32>) -> u32 {
     requested.unwrap_or(30).clamp(1, 480)
 }
@@ -65,7 +65,7 @@ pub enum Refused {
     NoLot,
     /// A part of the lot is still in nest or gripper.
     PartInside,
-    /// Another lot needs a machine at rest.
+    /// Another lot can begin only when the machine is at rest.
     NotAtRest(State),
     /// The mode can change only at rest.
     ModeLocked(State),
@@ -93,8 +93,8 @@ pub enum Refused {
     ShelveWithoutReason,
     /// The scan cannot be the serial number of a further part.
     Scan(ScanRefused),
-    /// An earlier run dropped scans whose parts may still lie in the magazine. Holds the alarm that names them: the rig takes
-    /// no scan until a person acknowledges it.
+    /// An earlier run dropped scans whose parts may still lie in the magazine. Holds the alarm that names them: the rig
+    /// takes no scan until a person acknowledges it.
     ScansDropped(Box<Alarm>),
     /// A prompt waits for its answer.
     PromptOpen,
@@ -157,7 +157,7 @@ impl Refused {
     }
 }
 
-/// Motions that may be jogged; [`Move::code`] is their name in orders.
+/// Motions that a person may jog; [`Move::code`] is their name in orders.
 pub const JOGS: [Move; 15] = {
     use crate::rig::axis::AxisStation;
     use crate::rig::bin::Bin;

@@ -1,7 +1,8 @@
 //! State machine of the whole rig, around those of feed, nest and sorter, with names of ISA-TR88.00.02 (PackML).
 //!
 //! [`TRANSITIONS`] alone defines the order of states: station, screen buttons and `golden/packml.dot` derive from it.
-//! `Execute` feeds, clamps, measures and sorts parts; `Completing`, `Stopping` and `Holding` finish them.
+//! `Execute` feeds, clamps, measures and sorts parts; `Completing` and `Stopping` finish those inside, `Holding` brings
+//! them to rest.
 //!
 //! - *Held*: the cause is inside the machine, and a person ends it. *Suspended*: the cause is outside (no parts, a
 //!   full bin), and the machine resumes by itself.
@@ -87,8 +88,8 @@ named! {
 }
 
 named! {
-    /// Next step towards a command that the state does not allow, or the reason why there is none. The names are codes
-    /// of the text family `next`.
+    /// Next step towards a command that the state does not allow, or the reason why there is no such step. The names
+    /// are codes of the text family `next`.
     NextStep {
         /// Wait until the machine rests.
         Wait = "wait",
@@ -201,7 +202,7 @@ const fn done(from: State, to: State) -> Transition {
     }
 }
 
-/// Every transition but `stop` and `abort`, which [`next`] adds for all states that allow them.
+/// Every transition except those of `stop` and `abort`, which [`next`] adds for all states that allow them.
 pub const TRANSITIONS: &[Transition] = &[
     order(State::Stopped, Command::Reset, State::Resetting),
     done(State::Resetting, State::Idle),

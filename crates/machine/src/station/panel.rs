@@ -7,12 +7,12 @@
 //! | stop | `stop`; an unattended run ends once the parts inside are finished |
 //! | reset | `clear` after an abort, else `reset` |
 //!
-//! A button gives one order when it has been down for [`SETTLED`] after being up for as long: a bounce or a held
-//! button never orders twice, and a button that is down at the start orders only after its release. Of several buttons
-//! stop wins, then reset. A button down for [`HELD`] counts as stuck (`button_stuck`), which stops nothing. An input
-//! without a sample is ignored.
+//! A button gives its order when it has been down for [`SETTLED`] after being up for as long: a bounce or a held button
+//! never orders twice, and a button that is down at the start orders only after its release. If several buttons are
+//! pressed, stop wins, then reset. A button down for [`HELD`] counts as stuck (`button_stuck`), which stops nothing. An
+//! input without a sample is ignored.
 //!
-//! Times are those of the samples, so that one sample, however old, never counts as settled.
+//! Times are those of the samples, so that one sample, however old it grows, never counts as settled.
 
 use super::packml::{Command, State};
 use super::trouble::Alarm;
@@ -72,7 +72,7 @@ impl Panel {
                 stuck.push(Alarm::button_stuck(button.point));
             }
         }
-        // Stop wins over start.
+        // The buttons are in order of precedence; only the first order counts.
         pressed.truncate(1);
         (pressed, stuck)
     }

@@ -1,4 +1,4 @@
-//! One turn of the sequence.
+//! One turn of the sequence that feeds, tests and sorts parts.
 
 use super::Station;
 use super::packml::Mode;
@@ -56,7 +56,8 @@ impl Station {
         self.lot.reference_left.is_empty() && self.device.is_calibrated()
     }
 
-    /// Returns true when a prompt waits for the last reference part to leave, or for its answer.
+    /// Returns true when the prompt before the first part still has no answer and is due as soon as the last reference
+    /// part has left.
     pub(super) fn is_prompt_due(&self) -> bool {
         self.is_calibration_over() && self.prompts.is_due(FIRST_PART)
     }
@@ -72,7 +73,7 @@ impl Station {
             && self.prompts.asks(FIRST_PART)
     }
 
-    /// Returns true when no part is in nest, fingers or chute and nothing moves.
+    /// Returns true when no part is in nest, fingers or chute, every row is safely on the disk, and nothing moves.
     pub(super) fn rests_empty(&self, recorded: u64, output: &TurnOutput) -> bool {
         let moving = self.line.mechanism.moving().next().is_some();
         self.line.is_finished(false, recorded, output) && !moving && output.rig.motions.is_empty()

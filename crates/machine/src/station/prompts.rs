@@ -1,4 +1,4 @@
-//! Prompts of the lot under way: while one is open nothing moves, and only its answer, a stop or an abort goes on.
+//! Prompts of the lot under way: while a prompt is open nothing moves until its answer, a stop or an abort.
 //!
 //! A prompt opens in the turn in which its moment comes, stays open while [`Prompts::asks`] is called in each turn, and
 //! closes with its answer, or when the machine leaves the moment (after an abort it opens again).
@@ -10,11 +10,11 @@ use crate::dut::prompt::{Prompt, PromptMoment};
 #[derive(Debug, Default)]
 pub(super) struct Prompts {
     all: Vec<Prompt>,
-    /// Places of the answered prompts in `all`.
+    /// Indices in `all` of the answered prompts.
     answered: Vec<usize>,
-    /// Place of the open prompt.
+    /// Index in `all` of the open prompt.
     open: Option<usize>,
-    /// Place of the prompt that was open in the turn before.
+    /// Index in `all` of the prompt that was open in the turn before.
     shown: Option<usize>,
 }
 
@@ -26,7 +26,7 @@ impl Prompts {
         }
     }
 
-    /// Returns the open prompt.
+    /// Returns the open prompt, if there is one.
     pub fn open(&self) -> Option<&Prompt> {
         self.open.map(|place| &self.all[place])
     }
@@ -36,7 +36,7 @@ impl Prompts {
         self.shown = self.open.take();
     }
 
-    /// Returns the prompt that has opened in this turn.
+    /// Returns the open prompt if it has opened in this turn.
     pub fn opened(&self) -> Option<&Prompt> {
         self.open().filter(|_| self.open != self.shown)
     }
@@ -73,7 +73,7 @@ impl Prompts {
         Ok(stops)
     }
 
-    /// Asks the prompts around a calibration again.
+    /// Marks the prompts before and after a calibration as unanswered, because there will be another calibration.
     pub fn calibrate_again(&mut self) {
         let again = [
             PromptMoment::BeforeCalibration,

@@ -8,7 +8,7 @@ use crate::handling::output::{Interrupted, Judged};
 use crate::rig::bin::Bin;
 use units::RigTime;
 
-/// Reason for a part that a reset finds inside without an earlier interruption.
+/// Reason for a part that a reset finds inside and that nothing interrupted before.
 const BY_A_RESET: &str = "reset";
 
 impl Station {
@@ -47,8 +47,8 @@ impl Station {
         output.rig.wake_at = Some(now);
     }
 
-    /// Interrupts the part in the nest. A part with a bin was judged already and put back: it goes to retest, and its
-    /// row records the reason.
+    /// Interrupts the part in the nest. A part with a bin was judged and then put back into the nest: it goes to
+    /// retest, and its row records the reason.
     fn resume_nested(&mut self, output: &mut TurnOutput) {
         let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
             return;

@@ -21,7 +21,7 @@ use units::{RigTime, Span};
 
 /// Time after the start within which every safety input must have a sample.
 pub(super) const FIRST_SCAN: Span = Span::ms(3000);
-/// Dark time of a beam after which its bin counts as full; a falling part darkens it for 11 ms.
+/// Time for which a beam must be dark for its bin to count as full; a falling part darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
 /// Safety inputs, each with the alarm of its open contact.
@@ -83,7 +83,7 @@ impl Station {
         output.notes.trouble.extend(late);
     }
 
-    /// Reports a part as stuck in the nest when the gripper lost it before the handover.
+    /// Reports a part as stuck in the nest, instead of dropped, if the gripper lost it before the handover.
     fn still_in_nest(&self, now: RigTime, image: &Image, found: &mut [Trouble]) {
         let there = !self.line.ledger.holds(Place::Gripper)
             && image.input(DigitalIn::NestPresent, now, SENSOR_AGE) == Some(true);
@@ -93,8 +93,8 @@ impl Station {
         }
     }
 
-    /// Returns an alarm for each safety input that is open, and one for an unread input once all have been read before
-    /// or the time for the first scan is over.
+    /// Returns an alarm for each safety input that is open, and one for the first unread input once all have been read
+    /// before or the time for the first scan is over.
     fn safety(&mut self, now: RigTime, inputs: &Inputs) -> Vec<Alarm> {
         let image = inputs.image;
         let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
@@ -138,7 +138,8 @@ impl Station {
         alarms
     }
 
-    /// Returns true while an emergency stop explains the low pressure and no actuator has to move.
+    /// Returns true when the emergency stop explains low air pressure: its chain is open, or has just closed while no
+    /// actuator has to move.
     fn is_vented(&self, now: RigTime) -> bool {
         let rests = packml::is_aborted(self.machine.state)
             || matches!(self.machine.state, State::Stopped | State::Complete);
@@ -174,7 +175,7 @@ impl Station {
         (starved && !parts).then(|| AlarmCode::MagazineEmpty.into())
     }
 
-    /// Reacts to a refused motion: homing tries another one first, any other state raises an alarm.
+    /// Reacts to a motion that the guard refused: homing first tries another motion, any other state raises an alarm.
     pub fn refused(
         &mut self,
         movement: Move,
@@ -205,7 +206,7 @@ impl Station {
         }
     }
 
-    /// Shows state and alarms on the stack light; tells `output` when the list of alarms has changed.
+    /// Shows state and alarms on the stack light; notes in `output` whether the list of alarms has changed.
     pub(super) fn show(&mut self, now: RigTime, output: &mut TurnOutput) {
         let listed = self.alarms.annunciator.listed();
         let stack = self
@@ -272,7 +273,7 @@ impl Station {
         self.line.cut_off();
     }
 
-    /// Sends parts in nest and gripper to retest; the row of a judged part records it.
+    /// Interrupts the parts in nest and gripper, so that they go to retest; the row of a judged part records this.
     fn interrupt(&mut self, why: &str, now: RigTime, output: &mut TurnOutput) {
         let parts = &mut output.record.parts;
         for part in self.line.ledger.held_mut() {

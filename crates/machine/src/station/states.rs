@@ -13,9 +13,9 @@ use crate::handling::feeder::Permits;
 use crate::handling::recovery::Recovery;
 use units::{RigTime, Span};
 
-/// Time within which outputs must confirm their safe value; after it the abort continues with an alarm.
+/// Time within which outputs must confirm their safe values; after it the abort raises an alarm and continues.
 const SAFE_WITHIN: Span = Span::ms(2000);
-/// Time after which an unattended suspension ends the run.
+/// Time after which a suspension ends an unattended run.
 const ALONE: Span = Span::ms(60_000);
 
 impl Station {
@@ -197,7 +197,7 @@ impl Station {
         }
     }
 
-    /// Finishes the parts inside, with `push` also the part in the pocket.
+    /// Finishes the parts inside; with `push`, also the part in the pocket.
     pub(super) fn finish(
         &mut self,
         now: RigTime,
@@ -235,7 +235,8 @@ impl Station {
         }
     }
 
-    /// Verifies the modules, then waits for a fresh sample of every safety input, which a reset requires.
+    /// Verifies the modules, then waits for a fresh sample of every safety input, which a reset requires, but no longer
+    /// than [`FIRST_SCAN`].
     fn clear(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if inputs.verified {
             self.machine.verified = Some(now);

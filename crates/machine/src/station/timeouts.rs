@@ -4,14 +4,14 @@
 //! |---|---|---|
 //! | feed on its way | strokes, each with its own time-out and one more try | 6 s |
 //! | clamping, probing, gripping, unclamping | strokes | 6 s |
-//! | testing | the measuring line; confirmation measurements take below 10 s | 60 s and the conditioning |
+//! | testing | the measuring line; confirmation measurements take less than 10 s | 60 s and the conditioning |
 //! | judged | the sorter over the nest, fingers open, z down | 15 s |
 //! | lifting | z up and the nest empty | 2.5 s |
 //! | sorter on its way | strokes and the axis | 8 s |
-//! | over the bin | rows of the part durable, beam read, the part before landed | 15 s |
+//! | over the bin | rows of the part on the disk, beam read, the part before landed | 15 s |
 //!
-//! The other steps have no timeout: they wait for a neighbour that has one, or for parts. A full bin stops the clock
-//! over the bin; in maintenance, and while an unattended run waits for its history, no timeout applies.
+//! The other steps have no timeout: they wait for a neighbour that has one, or for parts. A full bin stops the clock of
+//! the step over the bin. In maintenance, and while an unattended run waits for its history, no timeout applies.
 
 use super::catalogue::AlarmCode;
 use super::packml::{Mode, State};
@@ -23,7 +23,7 @@ use crate::handling::place::NestId;
 use crate::handling::sort::Sort;
 use units::{RigTime, Span};
 
-/// Owner of a step.
+/// Part of the feeder to which a step belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Owner {
     Feed,
@@ -52,7 +52,8 @@ impl Timeouts {
         self.since.clear();
     }
 
-    /// Returns the alarm of a step that has exceeded its timeout; of several steps, that of the last one.
+    /// Returns the alarm of a step that has exceeded its timeout, if there is one; of several, that of the step last in
+    /// the feeder.
     pub fn look(
         &mut self,
         now: RigTime,
@@ -81,7 +82,7 @@ impl Timeouts {
         late
     }
 
-    /// Returns the start time of a step; a new one begins now.
+    /// Returns the start time of a step; a step that is not yet known begins now.
     fn began(&mut self, step: Step, now: RigTime) -> RigTime {
         match self.since.iter_mut().find(|(who, ..)| *who == step.who) {
             Some((_, name, began)) => {
@@ -103,7 +104,7 @@ impl Timeouts {
     }
 }
 
-/// The step whose timeout means a stuck part.
+/// The step whose timeout means that a part is stuck.
 const LIFTING: &str = "lifting";
 
 fn steps(feeder: &Feeder) -> impl Iterator<Item = Step> {

@@ -55,14 +55,14 @@ impl From<Trouble> for Alarm {
 }
 
 impl Alarm {
-    /// Returns the text of the alarm; only its cause when an older version stored the alarm without arguments.
+    /// Returns the text of the alarm; only its cause if an older version stored the alarm without arguments.
     pub fn text(&self, lang: Lang) -> String {
         let said = self.code.message(self.args.clone()).try_say(lang);
         let [cause, ..] = self.code.help(lang);
         said.unwrap_or_else(|| cause.to_owned())
     }
 
-    /// Returns the message of the refusal named `refusal`, with this alarm inside it as arguments.
+    /// Returns the message of the refusal named `refusal`, with this alarm as its arguments.
     pub fn inside(&self, refusal: &'static str) -> Message {
         let args = self.args.clone().with("alarm", self.code.text_id());
         Message::of("refusal", refusal, args)
@@ -92,7 +92,8 @@ impl Alarm {
         }
     }
 
-    /// Adds the code of `inner` as argument `name`, for which texts show the text of `inner`; adds its arguments too.
+    /// Adds `inner` to the arguments: its code as argument `name`, for which texts show the text of `inner`, and its
+    /// arguments.
     fn with_inner(mut self, name: &'static str, inner: &Message) -> Self {
         self.args = self.args.with_inner(name, inner);
         self

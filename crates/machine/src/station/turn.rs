@@ -1,4 +1,4 @@
-//! Inputs and outputs of one turn of the station; the outputs by receiver.
+//! Inputs and outputs of one turn of the station; the outputs are grouped by their receiver.
 
 use super::orders::{Order, Refused};
 use super::packml::Command;
@@ -18,7 +18,7 @@ pub struct Inputs<'a> {
     pub image: &'a Image,
     /// Result of the requested job, in one turn only.
     pub job: Option<NestDone>,
-    /// Ordinal up to which parts are durably recorded.
+    /// Ordinal of the last part whose rows are safely on the disk.
     pub recorded: u64,
     /// State of the history.
     pub history: HistoryState,
@@ -26,9 +26,9 @@ pub struct Inputs<'a> {
     pub bus: Vec<Alarm>,
     /// Readings of the code reader since the last turn, in order; `None` is a reading without a code.
     pub readings: Vec<Option<String>>,
-    /// Alarm of a code reader whose port is lost.
+    /// Alarm about the code reader while its port is lost.
     pub reader: Option<Alarm>,
-    /// Lateness of this computer in the last seconds, when it explains an input that was not read.
+    /// Lateness of this computer in the last seconds, if it is long enough to explain an input that was not read.
     pub host_late: Option<Span>,
     /// True when the operator ends the lot once the parts inside are finished (one Ctrl-C).
     pub stop: bool,
@@ -48,7 +48,8 @@ pub enum HistoryState {
     /// Rows are written.
     #[default]
     Written,
-    /// Rows wait in an unattended run, where no operator can clear an alarm: no part leaves the nest, no timeout applies.
+    /// Rows wait in an unattended run, where no operator can clear an alarm: meanwhile no part leaves the nest and no
+    /// timeout applies.
     Waiting,
     /// Rows cannot be written at present.
     Lost(Alarm),
@@ -98,7 +99,7 @@ named! {
     }
 }
 
-/// Events for the record.
+/// Events of a turn, for the history.
 #[derive(Debug, Default)]
 pub struct Record {
     /// Events of parts.
@@ -121,7 +122,7 @@ pub struct Record {
     pub ending: Option<Ending>,
 }
 
-/// Trouble noted within a turn; empty at its end.
+/// Trouble noted within a turn; empty at the end of the turn.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     /// Alarms of this turn, not yet in the list.
@@ -135,7 +136,7 @@ impl Notes {
         self.trouble.is_empty() && self.feeder.is_empty()
     }
 
-    /// Turns trouble of the feeder into alarms, listed after those noted before.
+    /// Turns trouble of the feeder into alarms, which follow those noted before.
     pub fn take_over(&mut self) {
         self.trouble.extend(self.feeder.drain(..).map(Alarm::from));
     }

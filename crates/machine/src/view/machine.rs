@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use texts::Message;
 use utoipa::ToSchema;
 
-/// The PackML state of the rig and everything that belongs to it on the page.
+/// The PackML state of the rig, and everything that a page shows with it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct Machine {
     /// State by its PackML name, for example `Execute`.
     pub state: String,
     /// `production`, `maintenance`, `manual`.
     pub mode: String,
-    /// Every button, enabled or with the reason of its refusal.
+    /// Every button, enabled or with the reason why it is disabled.
     pub buttons: Vec<Button>,
     /// Actuators in the order of the line.
     pub actuators: Vec<ActuatorView>,
@@ -24,11 +24,11 @@ pub struct Machine {
     pub inputs: BTreeMap<String, Option<bool>>,
     /// Commanded digital outputs by name.
     pub outputs: BTreeMap<String, bool>,
-    /// Reaction to the emergency-stop input.
+    /// Reaction time to the emergency-stop input.
     pub reaction: Reaction,
     /// Motions that an operator may jog now, each with the guard's decision; empty while jogging is off.
     pub jogs: Vec<MotionView>,
-    /// The last motion that the guard refused; null after the next driven one.
+    /// The last motion that the guard refused; null once another motion begins.
     pub refused: Option<MotionView>,
     /// Wall time spent in each phase of the cycle since the program started, seconds.
     pub phases_s: BTreeMap<String, f64>,
@@ -37,7 +37,8 @@ pub struct Machine {
     /// Resistance of the two force contacts of the coil in series, ohm, mean over the last parts of the lot; null
     /// before the first.
     pub probe_contact_ohm: Option<f64>,
-    /// Serial numbers scanned for parts that have not come, the oldest first; null in a lot whose parts are not scanned.
+    /// Serial numbers scanned for parts that have not come, the oldest first; null in a lot whose parts are not
+    /// scanned.
     pub scans: Option<Vec<String>>,
     /// Prompt that waits for its answer; null without one.
     pub prompt: Option<Prompt>,
@@ -48,7 +49,7 @@ pub struct Machine {
 pub struct Button {
     /// Word of the order.
     pub order: String,
-    /// Motion, mode or alarm of the order; empty without one.
+    /// Motion, mode or alarm that the order names; empty without one.
     pub with: String,
     /// True when the station would accept the order now.
     pub enabled: bool,
@@ -82,7 +83,7 @@ pub struct Token {
     pub name: String,
     /// Bin of the part; empty before its verdict.
     pub bin: String,
-    /// Reason for the interruption of the test; empty without one.
+    /// Reason why the test was interrupted; empty without an interruption.
     pub interrupted: String,
     /// Serial number of a part of the lot; empty without one.
     pub serial: String,

@@ -1,4 +1,4 @@
-//! The machine as a picture: silhouettes to scale. The view has the current positions.
+//! The machine as a picture: silhouettes to scale, all actuators at rest. The view holds the current positions.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! The guard's decision on a motion: shown before a jog or after a refusal.
+//! The guard's decision on a motion, shown before a jog or after a refusal.
 
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -10,7 +10,7 @@ pub struct MotionView {
     pub motion: String,
     /// Strokes of the actuators involved.
     pub strokes: Vec<StrokeView>,
-    /// Least distance to the bodies that the motion must not touch, mm; null beyond 25 mm and for a refused motion.
+    /// Least distance to the bodies that the motion must not touch, mm; null above 25 mm, and for a refused motion.
     pub clearance_mm: Option<f64>,
     /// Reason for the refusal; null when the motion is clear.
     pub refused: Option<RefusedView>,
@@ -40,8 +40,8 @@ pub struct RefusedView {
     pub margin_mm: f64,
     /// Place of the contact, mm.
     pub at: [f64; 3],
-    /// Position up to which the stroke is clear, mm from the rest end; an actuator beyond may return to it. Null when
-    /// the stroke is blocked at its start.
+    /// Position up to which the stroke is clear, mm from the rest end; an actuator that has moved beyond it may return
+    /// to it. Null when the stroke is blocked at its start.
     pub last_clear_mm: Option<f64>,
     /// English text of the refusal, with the remedy.
     pub text: String,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use texts::Message;
 use utoipa::ToSchema;
 
-/// Makes a module for values that an order gives by name: serde functions and schema, with `$names` as known names.
+/// Makes a module for values that an order gives by name: serde functions and a schema that lists `$names`.
 macro_rules! by_name {
     ($module:ident, $kind:ty, $names:expr, $name:expr, $named:expr) => {
         mod $module {
@@ -80,7 +80,7 @@ pub enum Order {
     Abort {},
     /// Clears an abort once its causes are gone.
     Clear {},
-    /// Ends the run.
+    /// Ends the run once the parts inside are finished.
     Complete {},
     /// Changes the mode.
     Mode {
@@ -124,7 +124,7 @@ pub enum Order {
         #[schema(example = "loaded")]
         choice: String,
     },
-    /// Hides an alarm for a while.
+    /// Hides an alarm for a number of minutes.
     Shelve {
         /// Code of the alarm.
         #[schema(example = "door_open")]

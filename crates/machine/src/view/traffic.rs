@@ -23,7 +23,7 @@ pub struct Message {
     pub way: String,
     /// Characters; non-printable ones as `\r` or `\xNN`.
     pub text: String,
-    /// English text of the reply with its request; empty for a request, unless it goes to all modules.
+    /// What the reply says, with its request, in English; empty for a request, unless it goes to all modules.
     pub meaning: String,
     /// The same text in Chinese.
     pub meaning_zh: String,

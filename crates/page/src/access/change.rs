@@ -99,9 +99,9 @@ fn given_or_drawn(given: Option<&String>) -> Result<(String, Option<String>)> {
     })
 }
 
-/// Opens the audit of orders in the history `db`, runs `work`, and notes it there with its outcome; `what` puts the
-/// result of `work` into the words of the audit, `refusal` its error. Without an open audit `work` does not run. Returns
-/// what `work` returned.
+/// Runs `work`, notes it with its outcome in the audit of orders in the history `db`, and returns what `work` returned.
+/// `what` describes the result of `work` for the audit, `refusal` its error. Opens the audit first, and does not run
+/// `work` without it.
 ///
 /// # Errors
 /// Fails when the audit does not open, and when `work` succeeds but the audit cannot be written.

@@ -82,7 +82,7 @@ pub enum AccessError {
 }
 
 impl AccessError {
-    /// Returns the refusal in both languages; a failure of the program has its English words in both.
+    /// Returns the refusal in both languages; a failure of the program itself is described in English in both.
     #[must_use]
     pub fn message(&self) -> Message {
         match self {

@@ -58,7 +58,7 @@ pub struct Register {
     connection: Connection,
 }
 
-/// Returns the path of the file of people that belongs to `history`: `relayrig-access.db` for `relayrig.db`.
+/// Returns the path of the file of people that lies beside `history`: `relayrig-access.db` for `relayrig.db`.
 #[must_use]
 pub fn access_path(history: &Path) -> PathBuf {
     let stem = history.file_stem().unwrap_or_default().to_string_lossy();
@@ -166,7 +166,7 @@ impl Register {
         people.collect::<rusqlite::Result<_>>().doing(DOING)
     }
 
-    /// Returns all people in order of their names, each with the end of a lock that holds at `now_us`.
+    /// Returns all people in order of their names; an entry whose login is locked at `now_us` has the end of the lock.
     pub fn entries(&self, now_us: i64) -> Result<Vec<Entry>> {
         const DOING: &str = "listing people";
         let mut rows = self
@@ -268,7 +268,7 @@ fn own(path: &Path) {
     let _ = options.open(path);
 }
 
-/// Runs `first`, then brings the file from schema 1 to the present one.
+/// Runs the SQL `first`, then brings the file from schema 1 to the present one, in one transaction.
 fn make(connection: &Connection, first: &str) -> rusqlite::Result<()> {
     connection.execute_batch(&format!(
         "BEGIN IMMEDIATE; {first} {FAILURES} PRAGMA user_version = {SCHEMA}; \

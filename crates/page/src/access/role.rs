@@ -12,9 +12,9 @@ use utoipa::ToSchema;
 pub enum Role {
     /// Runs lots, gives every PackML command, acknowledges alarms.
     Operator,
-    /// Also jogs actuators, changes the mode, shelves alarms.
+    /// Also jogs and steps actuators, changes the mode, shelves alarms, releases held lots and resets wear counters.
     Maintainer,
-    /// Also changes recipes and people.
+    /// Also changes recipes and people, and reopens complete lots.
     Engineer,
 }
 

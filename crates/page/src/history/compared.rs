@@ -1,4 +1,5 @@
-//! `/api/history/compare` and `report/comparison`: lots side by side; `rejects`, `alarm-counts`: most frequent first.
+//! `/api/history/compare` and `report/comparison`: lots side by side; `rejects` and `alarm-counts`: reasons of rejects,
+//! and alarms, the most frequent first.
 
 use super::super::error::{ApiError, JsonResult};
 use super::super::router::App;
@@ -15,7 +16,7 @@ use history::{Archive, Filter};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-/// Own member of a comparison.
+/// Member of the query string that only a comparison takes.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct OfLots {
     /// Names of two to eight different lots, as a JSON array.

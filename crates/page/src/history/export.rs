@@ -1,5 +1,5 @@
 //! `/api/history/export.csv` and `.xlsx`: `history export` over HTTP. CSV is streamed without a limit; a spreadsheet is
-//! complete in memory before it is sent, so [`SHEET_PARTS`] limits it.
+//! complete in memory before it is sent, so [`SHEET_PARTS`] limits its size.
 //!
 //! `history prune` does not count such an export as a copy, because the server cannot know whether it arrived.
 

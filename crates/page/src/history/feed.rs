@@ -21,7 +21,7 @@ const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;
 
-/// Streams what `write` writes, on a blocking thread that keeps the archive and `place`, the permit to read it, until
+/// Streams what `write` writes, on a blocking thread that keeps the archive, and the permit to read it (`place`), until
 /// the end.
 pub(super) fn streamed(
     (archive, place): (Archive, impl Send + 'static),

@@ -56,7 +56,7 @@ pub(crate) struct TimeSpan {
     pub until: Option<Moment>,
 }
 
-/// Page of a long answer.
+/// Section of a long answer.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct Paging {
     /// Largest number of entries in the answer.
@@ -73,7 +73,7 @@ pub(crate) struct OfParts {
     /// Verdict.
     #[param(schema_with = verdicts)]
     verdict: Option<String>,
-    /// Bin of the verdict.
+    /// Bin that the verdict assigns.
     #[param(example = "pass")]
     bin: Option<String>,
     /// Serial number.
@@ -82,7 +82,7 @@ pub(crate) struct OfParts {
     /// `lot` (when absent), `golden` for reference parts, `all`.
     #[param(schema_with = kinds)]
     kind: Option<String>,
-    /// True: only parts between a passed reference check and a failed one.
+    /// True: only suspect parts, which were judged before a failed reference check and after the check before it.
     #[param(example = false)]
     suspect: Option<bool>,
 }
@@ -121,7 +121,7 @@ pub(crate) struct Charting {
     /// `nelson` (when absent) or `western-electric`.
     #[param(inline)]
     pub rules: Option<Rules>,
-    /// Number of points, counted from the last; 200 when absent.
+    /// Number of points in the answer, the last ones of the chart, 1 to 10,000; 200 when absent.
     #[param(minimum = 1, maximum = 10000, example = 100)]
     last: Option<u64>,
 }

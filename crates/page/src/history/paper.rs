@@ -28,15 +28,15 @@ pub(crate) fn with_policy(page: String) -> Page {
     As::new(([(CONTENT_SECURITY_POLICY, POLICY)], Html(page)))
 }
 
-/// Own members of `report/lot`.
+/// Member of the query string that only `report/lot` takes.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct OfReport {
-    /// Shortest cycle the line can keep, s, for the OEE.
+    /// Shortest cycle that the line can keep, s, for the OEE; the 5 % quantile of the cycle times when absent.
     #[param(example = 1.0)]
     ideal_cycle_s: Option<f64>,
 }
 
-/// Own members of `report/certificate`.
+/// Member of the query string that only `report/certificate` takes.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct OfCertificate {
     /// Number of the part.

@@ -22,7 +22,7 @@ impl Readers {
         Self { db, places }
     }
 
-    /// Opens the archive; the caller keeps the permit as long as the archive.
+    /// Opens the archive; the caller keeps the returned permit until it drops the archive.
     pub async fn open(&self) -> Result<(Archive, OwnedSemaphorePermit), ApiError> {
         let place = Arc::clone(&self.places).acquire_owned().await;
         let place = place.map_err(|_| ApiError::ReaderLost)?;

@@ -58,8 +58,8 @@ impl Connections {
 /// Resolves when its sender is dropped; no sender ever sends.
 pub(super) type Lost = oneshot::Receiver<()>;
 
-/// One of the limited places, held for a connection. Dropping this value frees it; another connection may take it
-/// before ([`Lost`]).
+/// One of the limited places, held for a connection. Dropping this value frees the place; another connection may take
+/// it earlier ([`Lost`]).
 #[derive(Debug)]
 pub(super) struct Place {
     places: Arc<Mutex<Places>>,
@@ -121,7 +121,7 @@ impl Places {
     }
 }
 
-/// Locks even after another holder panicked: no panic leaves the places half changed.
+/// Locks the places even after another holder panicked, because no panic leaves them half changed.
 fn locked(places: &Mutex<Places>) -> MutexGuard<'_, Places> {
     places.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! The certificate by which other computers know the page.
+//! The TLS certificate of the page, for screens on other computers.
 
 use super::listener::ListenError;
 use std::path::Path;

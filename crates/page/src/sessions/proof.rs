@@ -1,8 +1,7 @@
 //! Opens sessions for a right password, for the set-up code of the first engineer, and after a change of one's own
 //! password.
-//!
 //! The audit of orders notes every wrong password or code, with the typed name only if a person has it: people type
-//! passwords into the wrong field. A try that has to wait leaves no line, so that guessing cannot fill the disk.
+//! passwords into the wrong field. An attempt that has to wait leaves no line, so that guessing cannot fill the disk.
 
 use super::super::access::{AccessError, Login, Person, Role, note};
 use super::super::error::{ApiError, blocking};
@@ -15,7 +14,7 @@ use serde_json::json;
 pub(crate) type Session = (Person, String);
 
 impl Sessions {
-    /// Opens a session. Fails for a wrong name or password, and after too many tries.
+    /// Opens a session. Fails for a wrong name or password, and after too many wrong passwords.
     pub(crate) async fn log_in(
         &self,
         name: String,
@@ -91,7 +90,8 @@ impl Sessions {
         .await
     }
 
-    /// Returns the value of a right password or code. Notes a wrong one in the audit, and fails with `wrong`.
+    /// Returns the value of a right password or code. Fails with `wrong` for a wrong one, which the audit notes, and
+    /// with 429 when the register checked none.
     async fn answered<T>(
         &self,
         answer: Login<T>,

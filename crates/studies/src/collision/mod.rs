@@ -1,17 +1,17 @@
 //! `relayrig study collision`: speed against error of every way to check a move.
 //!
-//! The study asks every method about moves of five kinds in a scene of 1,000 bodies (`scene`), with the exact truth about
-//! each move (`world`):
+//! The study puts moves of five kinds to every method, in a scene of 1,000 bodies (`scene`), and knows the exact truth
+//! about each move (`world`). The methods:
 //! - the method of the paper (layer-based projection model of Peng and others, 2010), rebuilt (`paper`), at steps of 10,
 //!   1, 0.1 and 0.01 mm;
-//! - swept boxes: the swept query of the collision core over bounding boxes in place of the shapes, so that the shapes are
-//!   the only difference;
-//! - swept exact: the collision core as the guard uses it;
+//! - swept boxes: the swept query of the collision core over bounding boxes instead of the exact shapes; compared with
+//!   `swept exact`, only the shapes differ;
+//! - swept exact: the collision core as the guard of the motions uses it;
 //! - parry3d in f32 and f64 (`peer`).
 //!
-//! The study times every move alone, subtracts the time of reading the clock and takes the fastest of three passes;
-//! ratios compare times of the same run. The paper's method answers with its last clear pose. Finally the study checks
-//! every move of a small world (`small_world`).
+//! The study times each move separately, subtracts the time of reading the clock and takes the fastest of three passes;
+//! ratios compare times of the same run. The paper's method answers with its last pose free of a collision. Finally the
+//! study checks every move of a small world (`small_world`).
 
 mod outline;
 mod paper;
@@ -43,9 +43,9 @@ const EACH: usize = 200;
 const SEED: u64 = 1;
 /// Greatest coordinate of a corner in the small world.
 const SMALL_WORLD: i64 = 3;
-/// Name of the method to which bars and ratios refer.
+/// Name of the method under test, to which bars and ratios refer.
 const OURS: &str = "swept exact";
-/// Error of rounding in the truth, mm: an answer counts as late only beyond this.
+/// Rounding error of the exact truth, mm: an answer counts as late only when it is later by more than this.
 const ROUNDING_MM: f64 = 1e-12;
 
 /// Compares ways to check a move with the exact truth; returns the report, and the plot of speed against error as SVG.
@@ -120,7 +120,7 @@ fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
     Ok(methods)
 }
 
-/// Returns a [`Query`] that the collision core answers: `parts` swept against `elements`.
+/// Returns a [`Query`] by the collision core: it sweeps the mover of `parts` through the scene of `elements`.
 fn swept(elements: &[lpm::exact::Body], parts: &[lpm::exact::Body]) -> anyhow::Result<Query> {
     let mut model = Model::new();
     for (number, body) in elements.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Convex polygons on the baseplate, and the test by separating axes whether two of them meet.
+//! Convex polygons on the baseplate, and a separating-axis test whether two of them meet.
 
 /// A convex polygon, mm.
 #[derive(Debug, Clone)]
 pub struct Outline {
     corners: Vec<[f64; 2]>,
-    /// Outward normal of each edge, and the reach of the polygon along it.
+    /// Outward normal of each edge, as long as the edge, and the greatest scalar product of a corner with it.
     edges: Vec<([f64; 2], f64)>,
 }
 
@@ -36,7 +36,7 @@ impl Outline {
         ])
     }
 
-    /// Creates a regular polygon with its corners on a circle of `radius` (mm), the first one at `first` (rad).
+    /// Creates a regular polygon: its corners lie on a circle of `radius` (mm), the first at the angle `first` (rad).
     pub fn regular(centre: [f64; 2], radius: f64, corners: usize, first: f64) -> Outline {
         let corner = |number: usize| {
             let angle = first + std::f64::consts::TAU * number as f64 / corners as f64;

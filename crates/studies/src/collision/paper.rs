@@ -1,11 +1,11 @@
 //! The method of the paper (layer-based projection model of Peng and others, 2010), rebuilt from its published part: it
-//! checks poses one after the other, and nothing between them.
+//! checks single poses along a move, and not the motion between them.
 //!
-//! Each layer between neighbouring bottoms and tops of the elements holds a square grid of element numbers. A pose passes
-//! the tests in the paper's order: layers, silhouettes on x and y, oriented boxes, polygons. The polygons are the outlines
-//! as a display draws them: a cylinder has [`CORNERS`] corners on its mantle, at any rotation. Every body is upright, so
-//! that an outline and a height describe it and the polygon test adds no error. Details may differ from the authors' own
-//! program.
+//! The heights between neighbouring bottoms and tops of the elements are layers; each layer holds a square grid of
+//! element numbers. A pose passes the tests in the paper's order: layers, silhouettes on x and y, oriented boxes,
+//! polygons. The polygons are the outlines as a display draws them: a cylinder has [`CORNERS`] corners on its lateral
+//! surface, at an arbitrary rotation. Every body is upright, so that an outline and a height describe it and the
+//! polygon test adds no error. Details may differ from the authors' own program.
 
 use super::outline::Outline;
 use super::world::{TestMove, UNIT_MM};
@@ -40,7 +40,8 @@ pub struct Stepping {
     layers: Vec<Layer>,
     columns: usize,
     parts: Vec<Prepared>,
-    /// For each element, the last query that tested it: a query tests an element once, though several cells hold it.
+    /// For each element, the last query that tested it: although several cells hold an element, a query tests it only
+    /// once.
     tested: Vec<u64>,
     /// Number of queries so far; each is one part at one pose.
     queries: u64,
@@ -64,7 +65,7 @@ impl Stepping {
         }
     }
 
-    /// Returns the last clear pose before the first one that collides, as a fraction of the move; `None` when none collides.
+    /// Returns the last pose before the first colliding one, as a fraction of the move; `None` when no pose collides.
     pub fn first_contact(&mut self, test_move: &TestMove, step_mm: f64) -> Option<f64> {
         let poses = (test_move.length_mm() / step_mm).ceil().max(1.0);
         let from = test_move.from.map(|it| it as f64 * UNIT_MM);
@@ -96,8 +97,8 @@ impl Stepping {
         found
     }
 
-    /// Returns the numbers of the elements in the layers and cells that the box from `low` to `high` reaches; some come
-    /// more than once.
+    /// Returns the numbers of the elements in the layers and cells that the box from `low` to `high` reaches; a number
+    /// may repeat.
     fn numbers(&self, low: [f64; 3], high: [f64; 3]) -> impl Iterator<Item = usize> + '_ {
         let cell = |place: f64| ((place / PITCH_MM).max(0.0) as usize).min(self.columns - 1);
         let (xs, ys) = (cell(low[0])..=cell(high[0]), cell(low[1])..=cell(high[1]));
@@ -128,7 +129,7 @@ impl Prepared {
 }
 
 fn prepared_bodies(bodies: &[Body]) -> Vec<Prepared> {
-    // Rotations by the golden angle prefer no direction of the first corner.
+    // The golden angle gives every cylinder another rotation, so that no direction of the first corner prevails.
     let angle = |number: usize| 2.399_963 * number as f64;
     let each = bodies.iter().enumerate();
     each.map(|(number, body)| prepared(body, angle(number)))

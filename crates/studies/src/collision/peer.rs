@@ -1,7 +1,7 @@
-//! parry3d in both precisions, by its shape cast for a whole move.
+//! The collision library parry3d in single and double precision, queried with one shape cast per move.
 //!
-//! Scene and mover are one compound each. A move of length zero is an intersection test, because the cast reports no
-//! contact for it. The axis of a parry3d cylinder is y: the peer rotates it to z.
+//! Scene and mover are one compound each. A move of length zero uses an intersection test, because the shape cast
+//! reports no contact for it. The axis of a parry3d cylinder is y: this module rotates it to z.
 
 /// Defines a module with a `Peer` for one precision of parry3d.
 macro_rules! peer {

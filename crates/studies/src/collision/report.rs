@@ -10,7 +10,7 @@ use crate::scatter::{Point, Scatter};
 use quality::spread::median;
 use quality::{Ordered, Spread};
 
-/// Errors below this lie on the bottom line of the plot, mm.
+/// Lowest value of the error axis, mm: the plot shows smaller errors there.
 const LEAST_MM: f64 = 1e-10;
 
 /// A method with its results.
@@ -53,7 +53,7 @@ impl Scored {
         self.outcomes.iter().filter_map(|it| it.late_mm)
     }
 
-    /// Returns the absolute error that 99 of 100 contacts stay below, mm.
+    /// Returns the 99 % quantile of the absolute error over all contacts, mm.
     fn error_mm(&self) -> Option<f64> {
         let errors: Vec<f64> = self.late_mm().map(f64::abs).collect();
         Ordered::of(&errors).quantile(0.99)
@@ -72,7 +72,8 @@ fn ours(scored: &[Scored]) -> Option<&Scored> {
     scored.iter().find(|it| it.name == OURS)
 }
 
-/// Returns, for each method, the wall time of one move and its ratio to the time of [`OURS`].
+/// Returns, for each method, the wall time of one move and its ratio to the time of [`OURS`], each as median, 99 %
+/// quantile and mean.
 pub(super) fn speeds(scored: &[Scored]) -> Vec<Figure> {
     let row = |it: &Scored| {
         let ratio = |of: &dyn Fn(&Scored) -> Option<f64>| Some(of(it)? / of(ours(scored)?)?);
@@ -89,7 +90,7 @@ pub(super) fn speeds(scored: &[Scored]) -> Vec<Figure> {
 pub(super) fn errors(scored: &[Scored]) -> Vec<Figure> {
     let row = |it: &Scored| {
         let um = |mm: f64| Some(1e3 * mm);
-        // A contact deeper than one unit is more than a touch.
+        // Only a contact deeper than one unit is more than a touch.
         let deep = it.count(|it| it.missed && it.deep);
         let name = format!("wrong verdicts: {}", it.name);
         Figure::count(name, it.moves(), Some(it.wrong()))
@@ -115,7 +116,8 @@ pub(super) fn missed_by_kind(scored: &[Scored]) -> Vec<Figure> {
     scored.iter().map(row).collect()
 }
 
-/// Returns, by kind of move, the number of bodies near a move: only these bodies need an exact test.
+/// Returns, for each kind of move, statistics of the number of bodies near a move: only these bodies need an exact
+/// test.
 pub(super) fn bodies_near(moves: &[TestMove]) -> Vec<Figure> {
     let row = |kind: usize| {
         let of_kind = moves.iter().filter(|it| it.kind == kind);

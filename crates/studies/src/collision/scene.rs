@@ -14,10 +14,12 @@ use lpm::exact::{Body, Form, UPRIGHT};
 const ELEMENTS: usize = 1_000;
 /// Distance between neighbouring stacks, units.
 const PITCH: i64 = 60 * MM;
-/// Quaternions of the rotated blocks: about 37, 53, 67 and 77 degrees, with sine and cosine exact as fractions.
+/// Quaternions of the rotated blocks: about 37, 53, 67 and 77 degrees; sine and cosine of each angle are exact
+/// fractions.
 const TURNS: [[i64; 4]; 4] = [[3, 0, 0, 1], [2, 0, 0, 1], [3, 0, 0, 2], [5, 0, 0, 4]];
 
-/// Draws the elements; returns them with the edge of the plate and the height of the highest stack, units.
+/// Draws the elements; returns them with the edge length of the plate and the height of the highest stack, both in
+/// units.
 pub fn stacks(dice: &mut Dice) -> (Vec<Body>, i64, i64) {
     let side = ((ELEMENTS as f64 / 3.0).sqrt().ceil()) as i64;
     let mut elements = vec![Body::block(
@@ -77,7 +79,7 @@ pub fn gripper() -> Vec<Body> {
     ]
 }
 
-/// Returns the body with radius or half extents smaller by one unit.
+/// Returns the body with its radius and half extents smaller by one unit.
 pub fn thinned(body: &Body) -> Body {
     let form = match body.form {
         Form::Block { half, rotation } => Form::Block {

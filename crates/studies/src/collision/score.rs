@@ -4,9 +4,9 @@ use super::world::TestMove;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Number of passes over the moves. The fastest one counts for each move: other processes disturbed it least.
+/// Number of passes over the moves. The fastest pass of a move counts, because other processes disturbed it least.
 const PASSES: usize = 3;
-/// A move that takes longer than this runs in the first pass only, seconds.
+/// Time in seconds from which a move runs in the first pass only.
 const SLOW_S: f64 = 1e-4;
 
 /// Function that returns the first contact of a move as a fraction of it; `None` for a clear move.
@@ -27,17 +27,17 @@ pub struct Outcome {
     pub kind: usize,
     /// Wall time, us.
     pub us: f64,
-    /// Whether the truth is a contact and the answer clear.
+    /// Whether the method missed a contact: the truth is a contact, the answer is clear.
     pub missed: bool,
-    /// Whether the contact is deeper than one unit.
+    /// Whether the true contact is deeper than one unit.
     pub deep: bool,
-    /// Whether the truth is clear and the answer a contact.
+    /// Whether the method blocked a clear move: the truth is clear, the answer is a contact.
     pub false_block: bool,
     /// Answer minus truth where both are contacts, mm along the move; positive is late.
     pub late_mm: Option<f64>,
 }
 
-/// Runs every move and times each alone; subtracts `clock_us`.
+/// Runs every move and times each separately; subtracts the time of reading the clock, `clock_us`.
 pub fn outcomes(method: &mut Method, moves: &[TestMove], clock_us: f64) -> Vec<Outcome> {
     let first: Vec<(f64, Option<f64>)> = moves
         .iter()

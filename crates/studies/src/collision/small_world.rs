@@ -1,6 +1,6 @@
-//! All moves of a small world: every block with whole corners from 0 to 3 in each axis moves past every other one by
-//! every whole displacement from -3 to 3. These are 16,003,008 moves; the study compares verdict and time of each with
-//! the exact truth.
+//! All moves of a small world: every block with integer corners from 0 to 3 on each axis moves past every other block
+//! by every integer displacement from -3 to 3. These are 16,003,008 moves; the study compares the verdict and the time
+//! of each answer with the exact truth.
 
 use crate::pool;
 use lpm::exact::{Body, first_contact};
@@ -33,7 +33,7 @@ impl SmallWorldCounts {
     }
 }
 
-/// Checks every move of the world with corners from 0 to `most`, on all cores.
+/// Checks every move of the world with corners from 0 to `most`, on all processor cores.
 ///
 /// # Errors
 /// Fails when the collision core refuses a block.
@@ -47,7 +47,7 @@ pub fn check_all(most: i64) -> anyhow::Result<SmallWorldCounts> {
         .fold(SmallWorldCounts::default(), SmallWorldCounts::and))
 }
 
-/// Returns every block, with centres and half extents doubled so that they are whole.
+/// Returns every block; its centre and half extents are doubled, so that they are integers.
 fn every_block(most: i64) -> Vec<Body> {
     let spans = || {
         (0..most).flat_map(move |low| (low + 1..=most).map(move |high| [low + high, high - low]))

@@ -1,7 +1,8 @@
-//! The moves of the study in its scene (`scene`), in whole units, so that the truth about them is exact.
+//! The moves of the study in its scene (`scene`). All coordinates are integers of [`UNIT_MM`], so that the truth is
+//! exact.
 //!
-//! Moves are jogs of 5 mm, descents, horizontal moves of 300 mm, traverses of the whole plate, and moves that pass one
-//! body with a gap or an overlap of 0 to 1 mm. One seed determines everything.
+//! Kinds of moves: jogs of 5 mm, descents, horizontal moves of 300 mm, traverses of the whole plate, and moves that
+//! pass one body with a gap or an overlap of 0 to 1 mm. The seed determines scene and moves.
 
 use super::scene::{gripper, reach, stacks, thinned};
 use crate::dice::Dice;
@@ -19,7 +20,7 @@ pub const KINDS: [&str; 5] = ["jog", "descend", "local", "traverse", "graze"];
 /// A move and the truth about it.
 #[derive(Debug, Clone)]
 pub struct TestMove {
-    /// One of [`KINDS`].
+    /// Kind of the move, an index of [`KINDS`].
     pub kind: usize,
     /// Start of the mover, units.
     pub from: [i64; 3],
@@ -27,9 +28,9 @@ pub struct TestMove {
     pub run: [i64; 3],
     /// Exact first contact as a fraction of the move; `None` for a clear move.
     pub truth: Option<f64>,
-    /// Whether a mover thinner by one unit has a contact too.
+    /// Whether a mover thinner by one unit has a contact too, that is, whether the contact is more than a touch.
     pub deep: bool,
-    /// Number of elements near the move: their box meets the swept box of a part of the mover.
+    /// Number of elements whose bounding box meets the swept bounding box of a part of the mover.
     pub near: usize,
 }
 
@@ -61,7 +62,7 @@ impl TestMove {
 pub struct World {
     /// Bodies of the scene.
     pub elements: Vec<Body>,
-    /// Parts of the mover around its origin, the tip between the fingers.
+    /// Parts of the mover; its origin is the tip between the fingers.
     pub parts: Vec<Body>,
     /// Moves of every kind.
     pub moves: Vec<TestMove>,
@@ -172,7 +173,7 @@ impl World {
 /// Returns whether the bounding boxes of element and part meet while the part moves by `run`.
 fn boxes_meet(element: &Body, part: &Body, run: [i64; 3]) -> bool {
     let (a, b) = (reach(element), reach(part));
-    // Most of the scene is far away: a comparison per axis spares the exact test of the boxes.
+    // Most of the scene is far away: comparing one axis spares the exact test of the boxes.
     let far = (0..3).any(|axis| {
         let (apart, sum) = (part.centre[axis] - element.centre[axis], a[axis] + b[axis]);
         apart + run[axis].min(0) > sum || apart + run[axis].max(0) < -sum
@@ -181,7 +182,7 @@ fn boxes_meet(element: &Body, part: &Body, run: [i64; 3]) -> bool {
     !far && first_contact(&a, &b, run).is_some()
 }
 
-/// Draws a direction whose length is 13 exactly.
+/// Draws a horizontal direction with integer components and a length of exactly 13.
 fn direction(dice: &mut Dice) -> (i64, i64) {
     let (x, y) = *dice.one(&[(13, 0), (0, 13), (5, 12), (12, 5)]);
     let signs = dice.within(0, 3);

@@ -1,11 +1,11 @@
-//! What a figure has to say about its machine and its program.
+//! Circumstances of a run: processor, load by other programs, and commit of the program.
 
 use super::super::pool;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-/// Time over which other programs are watched.
+/// Time for which [`busy_cores`] watches other programs.
 const WATCHED: Duration = Duration::from_secs(1);
 
 /// Returns the name of the processor.
@@ -17,8 +17,8 @@ pub fn cpu() -> String {
     name.unwrap_or_else(|| std::env::consts::ARCH.to_owned())
 }
 
-/// Watches the processor for a second and returns the number of cores that other programs kept busy, those of other
-/// virtual machines included; `None` where the system does not say.
+/// Watches the processor for a second and returns the number of cores that other programs kept busy, programs of other
+/// virtual machines on the host included; `None` where the system has no `/proc/stat`.
 pub fn busy_cores() -> Option<f64> {
     let before = jiffies(&std::fs::read_to_string("/proc/stat").ok()?)?;
     std::thread::sleep(WATCHED);
@@ -28,21 +28,21 @@ pub fn busy_cores() -> Option<f64> {
     (all > 0).then(|| pool::cores() as f64 * busy as f64 / all as f64)
 }
 
-/// Time of all cores since the start of the system, in ticks of its clock.
+/// Processor time of all cores since the start of the system, in clock ticks.
 #[derive(Debug, PartialEq)]
 struct Jiffies {
     busy: u64,
     all: u64,
 }
 
-/// Reads `/proc/stat`.
+/// Parses the text of `/proc/stat`.
 fn jiffies(text: &str) -> Option<Jiffies> {
     let line = text.lines().next()?.strip_prefix("cpu ")?;
     let ticks: Vec<u64> = line
         .split_whitespace()
         .map_while(|it| it.parse().ok())
         .collect();
-    // user, nice, system, idle, iowait, irq, softirq, steal; the others are parts of these.
+    // user, nice, system, idle, iowait, irq, softirq, steal; the later numbers are already part of these.
     let known = ticks.get(..8)?;
     let all = known.iter().sum::<u64>();
     let idle = known[3] + known[4];
@@ -57,13 +57,13 @@ pub fn commit() -> Option<String> {
     git(&["rev-parse", "--short=8", "HEAD"])
 }
 
-/// Returns whether the working folder differs from its commit; figures and pictures in `docs` do not count. The working
-/// folder is the root of the repository.
+/// Returns whether the working folder differs from its commit, figures and pictures in `docs` aside. The working folder
+/// must be the root of the repository.
 pub fn is_changed(docs: &Path) -> bool {
     git(&["status", "--porcelain"]).is_some_and(|listed| lists_others(&listed, docs))
 }
 
-/// Returns whether a list of changed files has one that is no figure and no picture.
+/// Returns whether the output of `git status` lists a file that is neither a figure nor a picture.
 fn lists_others(listed: &str, docs: &Path) -> bool {
     let own = ["figures.md", "figures/results", "pictures"].map(|it| docs.join(it));
     let mut files = listed

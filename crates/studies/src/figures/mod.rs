@@ -1,13 +1,13 @@
-//! `relayrig study figures`: runs the plan of the figures, stores the results and writes `figures.md` with its pictures.
+//! `relayrig study figures`: runs the plan of the figures, stores the results, writes `figures.md` with its pictures.
 //!
 //! | file or folder, below that of the documents | holds |
 //! |---|---|
-//! | `figures/plan.toml` | the runs, in sections, and what a reader has to know ([`plan`]) |
+//! | `figures/plan.toml` | the runs, in sections, with their explanations for the reader ([`plan`]) |
 //! | `figures/results/NAME.jsonl` | circumstances and figures of a run ([`result`]) |
-//! | `figures.md` | the document, made from plan and results alone ([`page`]) |
+//! | `figures.md` | the document, rendered from plan and results alone ([`page`]) |
 //! | `pictures/` | pictures that a study draws, and plots of figures ([`plot`]) |
 //!
-//! A run without a result, or with the result of another command, counts as not run.
+//! A run that has no result, or only the result of a different command, counts as not run.
 
 mod machine;
 mod number;
@@ -28,28 +28,28 @@ use std::path::{Path, PathBuf};
 /// What to run and to write.
 #[derive(Debug, Clone)]
 pub struct Order {
-    /// Path of this program, which the studies run in.
+    /// Path of this program, which runs the studies.
     pub program: PathBuf,
     /// Folder of the configuration.
     pub config: PathBuf,
     /// Folder of the documents.
     pub docs: PathBuf,
-    /// Names of the runs; without them every run of the plan.
+    /// Names of the runs to make; when empty, every run of the plan.
     pub only: Vec<String>,
-    /// Whether the document is written from the stored results alone.
+    /// Whether to write the document from the stored results, without any run.
     pub renders_only: bool,
 }
 
-/// What became of an order.
+/// Result of [`make`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Done {
     /// Number of runs of the plan.
     pub runs: usize,
-    /// Number of runs that have a result.
+    /// Number of runs of the plan that have a result.
     pub with_result: usize,
     /// Number of figures that miss their bar.
     pub missed: usize,
-    /// Why a run of this order has no new result.
+    /// One message for each run that failed and so has no new result.
     pub failures: Vec<String>,
 }
 
@@ -58,7 +58,7 @@ pub struct Done {
 pub struct Rendered {
     /// Content of `figures.md`.
     pub document: String,
-    /// Name in the folder `pictures`, and content.
+    /// Pictures to write in the folder `pictures`: name and content of each file.
     pub pictures: Vec<(String, String)>,
 }
 
@@ -102,7 +102,7 @@ fn rendered(plan: &Plan, results: &Results) -> Rendered {
     }
 }
 
-/// Returns the runs of the order.
+/// Returns the runs to make; fails when `only` has a name that the plan lacks.
 fn chosen<'a>(plan: &'a Plan, order: &Order) -> anyhow::Result<Vec<&'a Run>> {
     let names: Vec<&str> = plan.runs().map(|run| run.name.as_str()).collect();
     for name in &order.only {

@@ -1,15 +1,15 @@
-//! Numbers for people: three digits, and as many more as show on which side of its bar a value lies.
+//! Numbers for people: three significant digits, or more where rounding would move a value across its bar.
 
 use crate::figure::{Bar, shown};
 
-/// Digits of a value.
+/// Significant digits of a value.
 const DIGITS: usize = 3;
-/// Digits of a bar, and most digits of a value.
+/// Significant digits of a bar, and the most of a value.
 const MOST: usize = 6;
-/// Power of ten below which a number has an exponent.
+/// Decimal exponent below which a number appears in scientific notation.
 const SMALL: i32 = -5;
 
-/// Formats a value; a rounded value keeps its bar if and only if the value does.
+/// Formats a value so that the rounded value meets its bar if and only if the value does.
 pub fn value(value: f64, bar: Option<Bar>) -> String {
     let same_side = |text: &String| {
         let rounded: Option<f64> = text.replace(',', "").parse().ok();
@@ -32,12 +32,12 @@ pub fn bar(bar: Bar) -> String {
     }
 }
 
-/// Formats a count with a comma at thousands.
+/// Formats a count with a comma between groups of three digits.
 pub fn count(n: u64) -> String {
     grouped(&n.to_string())
 }
 
-/// Formats a number to `digits` digits; a whole number keeps all of its own.
+/// Formats a number to `digits` significant digits; an integer keeps all of its digits.
 fn number(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();

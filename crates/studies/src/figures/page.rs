@@ -1,4 +1,4 @@
-//! The document: what is missed, what is not run, then the figures of every run, as Markdown.
+//! The document as Markdown: first the missed bars, then the runs without a result, then the figures of every run.
 
 use super::number;
 use super::plan::{Machine, Plan, Run};
@@ -30,7 +30,7 @@ pub fn document(plan: &Plan, results: &Results) -> String {
     text
 }
 
-/// Returns the pictures that are drawn from figures: name and content of each file.
+/// Returns the pictures that the document draws from figures: name and content of each file.
 pub fn pictures(plan: &Plan, results: &Results) -> Vec<(String, String)> {
     let drawn = |run: &Run| -> Vec<(String, String)> {
         let rows = results.get(&run.name).map_or(&[][..], |it| &it.rows);
@@ -43,7 +43,7 @@ pub fn pictures(plan: &Plan, results: &Results) -> Vec<(String, String)> {
     plan.runs().flat_map(drawn).collect()
 }
 
-/// Returns every figure that misses its bar, with its run.
+/// Returns every figure that misses its bar, each after its run.
 pub fn missed_rows<'a>(plan: &'a Plan, results: &'a Results) -> Vec<(&'a Run, &'a Row)> {
     let of = |run: &'a Run| {
         let rows = results.get(&run.name).map_or(&[][..], |it| &it.rows);
@@ -54,7 +54,7 @@ pub fn missed_rows<'a>(plan: &'a Plan, results: &'a Results) -> Vec<(&'a Run, &'
     plan.runs().flat_map(of).collect()
 }
 
-/// Returns the anchor of a heading.
+/// Returns the Markdown anchor of a heading.
 pub fn anchor(title: &str) -> String {
     let kept = title
         .chars()

@@ -1,5 +1,5 @@
-//! The plan of the figures, `figures/plan.toml` in the folder of the documents: the runs that make them, in sections,
-//! with what a reader has to know.
+//! The plan of the figures, `figures/plan.toml` in the folder of the documents: in sections, the runs that make the
+//! figures, and explanations for the reader.
 
 use super::page::anchor;
 use anyhow::{Context, ensure};
@@ -42,17 +42,18 @@ pub struct Run {
     /// Sentences below the heading.
     #[serde(default)]
     pub about: String,
-    /// Words that start the run, separated by spaces; the run adds `--json`. A word `relayrig` stands for this program.
+    /// Program and arguments of the run, separated by spaces; the runner adds `--json`. The word `relayrig` stands for
+    /// this program.
     pub command: String,
     /// Machine that the figures need.
     pub machine: Machine,
-    /// Beginnings of the names of the figures to show; without them the document shows all. A missed bar always shows.
+    /// Prefixes of the names of the figures to show; when empty, the document shows all. It always shows a missed bar.
     #[serde(default)]
     pub shows: Vec<String>,
     /// Pictures below the figures.
     #[serde(default)]
     pub pictures: Vec<Picture>,
-    /// Larger runs, which take too long for the plan.
+    /// Longer variants of the run, which take too long for the plan; a reader starts them by hand.
     #[serde(default)]
     pub larger: Vec<Larger>,
 }
@@ -75,7 +76,7 @@ pub struct Picture {
     pub file: String,
     /// What the picture shows.
     pub about: String,
-    /// How to draw the picture from the figures; without it the study draws it (`--out`).
+    /// How to draw the picture from the figures; without it, the study itself draws the picture (`--out`).
     pub plot: Option<Plot>,
 }
 
@@ -83,11 +84,12 @@ pub struct Picture {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plot {
-    /// Words that the name of each drawn figure contains.
+    /// Words that the name of a figure must contain to be drawn.
     #[serde(default)]
     pub figures: Vec<String>,
-    /// Column of the x axis: its name for a point per figure, with the value above it; its beginning and a `*` for a
-    /// curve per figure over all such columns, with x in the place of the `*`.
+    /// Columns of the x axis. A name draws one point per figure, with x from this column and y the value. A prefix and
+    /// `*` draw one curve per figure: each column with this prefix is a point, with x in the place of the `*` and y the
+    /// column.
     pub column: String,
     /// Title of the x axis.
     pub x: String,
@@ -95,11 +97,11 @@ pub struct Plot {
     pub y: String,
 }
 
-/// A run by hand.
+/// A longer run that a reader starts by hand.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Larger {
-    /// Words that start the run.
+    /// Program and arguments of the run.
     pub command: String,
     /// What the run shows, and how long it takes.
     pub about: String,

@@ -30,7 +30,7 @@ pub fn svg(plot: &Plot, title: &str, rows: &[Row]) -> Option<String> {
     (!scatter.points.is_empty()).then(|| scatter.svg())
 }
 
-/// Returns the name of a figure without the words that all drawn figures contain.
+/// Returns the name of a figure without the words that select the figures of the plot.
 fn label(plot: &Plot, row: &Row) -> String {
     let shared = plot.figures.iter();
     let own = shared.fold(row.figure.clone(), |name, word| name.replacen(word, "", 1));
@@ -40,7 +40,7 @@ fn label(plot: &Plot, row: &Row) -> String {
     }
 }
 
-/// Returns the point of a figure: its value over a column.
+/// Returns the point of a figure, x from the column and y from the value; `None` when either is missing.
 fn point(row: &Row, column: &str, name: String) -> Option<Point> {
     Some(Point {
         name,
@@ -51,7 +51,7 @@ fn point(row: &Row, column: &str, name: String) -> Option<Point> {
     })
 }
 
-/// Returns the points of a figure over all columns with this beginning; the last one has the name.
+/// Returns the curve of a figure: a point for each column with the prefix `start`; only the last point has a label.
 fn curve(row: &Row, start: &str, series: usize, label: &str) -> Vec<Point> {
     let columns = row.columns.iter().filter_map(|(key, y)| {
         let x = key.strip_prefix(start)?.parse::<f64>().ok()?;

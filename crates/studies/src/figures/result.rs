@@ -1,4 +1,4 @@
-//! The result of a run as lines of JSON: first its circumstances, then what it printed.
+//! The result of a run as lines of JSON: first its circumstances, then the figures that it printed.
 
 use super::plan::Run;
 use crate::figure::Bar;
@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Keys of a figure that are no further columns.
+/// Keys that every figure has; any other key is a further column.
 const FIXED: [&str; 8] = [
     "type", "study", "figure", "n", "value", "unit", "bar", "met",
 ];
@@ -26,11 +26,11 @@ pub struct Head {
     pub is_changed: bool,
     /// Name of the processor.
     pub cpu: String,
-    /// Number of threads that the processor runs at a time.
+    /// Number of threads that the processor runs simultaneously.
     pub cores: usize,
     /// Number of cores that other programs kept busy just before the run; `None` where the system does not say.
     pub busy_cores: Option<f64>,
-    /// Wall time of the run.
+    /// Wall time of the run, seconds.
     pub seconds: f64,
 }
 
@@ -61,7 +61,7 @@ pub struct RunResult {
 }
 
 impl Row {
-    /// Returns whether the value misses its bar; no value misses every bar.
+    /// Returns whether the value misses its bar; a missing value misses any bar.
     pub fn is_missed(&self) -> bool {
         let is_kept = |bar: Bar| self.value.is_some_and(|value| bar.is_met(value));
         self.bar.is_some_and(|bar| !is_kept(bar))

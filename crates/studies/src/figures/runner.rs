@@ -10,14 +10,14 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 use tempfile::TempDir;
 
-/// Word that stands for this program.
+/// Word of a command that stands for this program.
 const OWN: &str = "relayrig";
 
-/// Runs a command to its end, and stores its figures and the pictures that it draws.
+/// Runs one command of the plan; stores its figures and the pictures that it draws.
 ///
 /// # Errors
-/// Fails when the command does not start, ends with neither 0 nor 1 (a missed bar), prints no figure, or lacks a
-/// picture. The result that was there stays.
+/// Fails when the command does not start, ends with another status than 0 or 1 (a missed bar), prints no figure, or
+/// lacks a picture. A failure keeps the previous result.
 pub fn run(order: &Order, run: &Run) -> anyhow::Result<()> {
     let folder = TempDir::new()?;
     let busy_cores = machine::busy_cores();
@@ -59,7 +59,8 @@ fn drawn(run: &Run) -> impl Iterator<Item = &Picture> {
     run.pictures.iter().filter(|picture| picture.plot.is_none())
 }
 
-/// Returns the command that prints the figures of a run as lines of JSON. This program gets a history of its own.
+/// Returns the command that prints the figures of a run as lines of JSON. A command of this program uses a temporary
+/// history.
 fn command(order: &Order, run: &Run, folder: &Path) -> anyhow::Result<Command> {
     let mut words = run.command.split_whitespace();
     let program = match words.next() {
@@ -85,7 +86,7 @@ fn command(order: &Order, run: &Run, folder: &Path) -> anyhow::Result<Command> {
     if drawn(run).next().is_some() {
         command.arg("--out").arg(folder);
     }
-    // The options of a benchmark come after those of cargo.
+    // The options of a benchmark come after those of cargo, separated by `--`.
     let is_bench = program == Path::new("cargo");
     if is_bench && !run.command.contains(" -- ") {
         command.arg("--");

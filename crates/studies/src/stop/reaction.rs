@@ -1,13 +1,12 @@
-//! Time that motion outputs stay on after the emergency stop, from the journal of the simulated rig.
+//! Time for which motion outputs stay on after the emergency stop, from the journal of the simulated rig.
 
 use crate::journal::Entry;
 use std::collections::BTreeMap;
 
-/// Interval after a stop in which the script gives no order, microseconds; the longest reaction that the study can
-/// find.
+/// Interval after a stop in which the script gives no order, microseconds. The study cannot find a longer reaction.
 const QUIET_US: u64 = 2_000_000;
 
-/// Returns for every stop the time until the last motion output is off, milliseconds; `None` when none was on.
+/// Returns, for every stop, the time until the last motion output is off, milliseconds; `None` when none was on.
 pub fn reactions(entries: &[Entry], moving: &BTreeMap<String, u16>) -> Vec<Option<f64>> {
     let mut on: BTreeMap<&str, u16> = BTreeMap::new();
     let mut reactions: Vec<Option<f64>> = Vec::new();
@@ -17,7 +16,7 @@ pub fn reactions(entries: &[Entry], moving: &BTreeMap<String, u16>) -> Vec<Optio
             Entry::Struck { t_us, fault } if fault == "estop" => {
                 pressed_us = Some(*t_us);
                 let any = on.values().any(|bits| *bits != 0);
-                // An output that never goes off counts as the whole quiet interval.
+                // An output that never goes off counts with the whole quiet interval.
                 reactions.push(any.then_some(QUIET_US as f64 / 1e3));
             }
             Entry::Output { t_us, module, bits } => {

@@ -1,12 +1,12 @@
-//! Instants at which the emergency stop is pressed in a lot, and the script that presses it.
+//! The instants at which a lot presses the emergency stop, and the script that does so.
 
 use super::LATE_MS;
 use crate::order::Order;
 
-/// Number of parts from one stop to the next: two go to retest, then the line runs evenly again.
+/// Number of parts from one stop to the next: after a stop two go to retest, then the line runs evenly again.
 const PARTS_BETWEEN: u64 = 5;
-/// Time after nest exit, seconds, at which a test is in its middle: jaws closed, probes up, z down, the next part in
-/// the pocket, so that homing has long strokes.
+/// Time after a nest exit, seconds, when a test is half done: jaws closed, probes up, z down, the next part in the
+/// pocket, so that homing has long strokes.
 const MID_TEST_S: f64 = 1.0;
 /// Orders of the operator after a stop: clear and reset; [`START`] follows.
 const CLEAR: &str = "after state Aborted +4 order clear\nafter state Stopped order reset\n";
@@ -41,7 +41,7 @@ impl Sweep {
         }
     }
 
-    /// Returns how often the script presses the stop for each instant; only the last press counts.
+    /// Returns how often the script presses the stop for each instant; the reaction to the last press alone counts.
     pub const fn presses(self) -> usize {
         match self {
             Self::Cycle => 1,
@@ -49,15 +49,15 @@ impl Sweep {
         }
     }
 
-    /// Returns the instants at which a lot is stopped, seconds from the start of the swept interval; other lots have
-    /// instants between these.
+    /// Returns the instants at which this lot presses the stop, seconds from the start of the swept interval. The lots
+    /// of a sweep interleave their instants.
     pub fn instants(self, order: &Order, lot: u64) -> Vec<f64> {
         let all = (order.lots * order.parts) as f64;
         let instant = |stop: u64| self.span_s() * (stop * order.lots + lot) as f64 / all;
         (0..order.parts).map(instant).collect()
     }
 
-    /// Returns the script of a lot; with `slow` its replies come [`LATE_MS`] late.
+    /// Returns the script of a lot; with `slow`, every reply comes [`LATE_MS`] late.
     pub fn script(self, instants: &[f64], slow: bool) -> String {
         let parts = (instants.len() as u64 + 1) * PARTS_BETWEEN;
         let mut text = format!("# Emergency stops\nparts {parts}\n");

@@ -1,5 +1,5 @@
-//! One life of the controller: the program as `run` starts it, in virtual time, in this process, on a rig that keeps
-//! its state from life to life. A kill drops the program with all its tasks in the middle of a turn.
+//! One life of the controller: the program as `run` starts it, in virtual time, inside this process, on a rig that
+//! keeps its state from life to life. A kill drops the program with all its tasks in the middle of their work.
 
 use super::operator::{Answered, Operator};
 use super::scenario::Life;
@@ -21,9 +21,10 @@ use std::sync::{Arc, OnceLock};
 use tokio::sync::mpsc;
 use units::RigTime;
 
-/// Wall clock at rig time zero, microseconds since 1970 UTC: 2027-01-15. The same for every seed.
+/// Wall clock at rig time zero, microseconds since 1970 UTC: 2027-01-15, the same for every seed.
 pub const EPOCH_US: i64 = 1_800_000_000_000_000;
-/// Longest life of the controller over a lot of a few parts, with all waits of operator and station, microseconds.
+/// Longest life of the controller, microseconds: enough for a lot of a few parts with all waits of operator and
+/// station.
 const LONGEST_US: u64 = 300_000_000;
 
 /// End of a life.
@@ -90,7 +91,7 @@ impl Runner<'_> {
             .with_context(|| format!("a calm rig was not calibrated: {end:?}"))
     }
 
-    /// Runs one life; `operator_dice` draws the orders of an attended one.
+    /// Runs one life; with an operator, `operator_dice` draws the operator's orders.
     ///
     /// # Errors
     /// Fails when the runtime cannot be built.
@@ -171,7 +172,7 @@ impl Runner<'_> {
             };
             (end, pace.now())
         });
-        // The runtime drops all tasks, as a kill would.
+        // The runtime drops all tasks without waiting, as a kill would.
         runtime.shutdown_background();
         let mut all = Vec::new();
         while let Ok(one) = heard.try_recv() {

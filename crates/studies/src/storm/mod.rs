@@ -1,13 +1,13 @@
 //! The storm: short lots under random faults of world and line, random orders of an operator, and kills of the
-//! controller, in virtual time, in this process.
+//! controller, in virtual time, inside this process.
 //!
 //! A seed is one rig under several lives of the controller; a life lasts from start to end of the program. `scenario`
-//! draws the faults and their instants, `life` runs the program as `run` does and kills it, `operator` gives orders. When
-//! all faults are over, the controller starts again, up to [`CALM`] times, and must complete a lot. Then `judge` compares
-//! the truth of the rig with the history.
+//! draws the faults and their instants, `life` runs the program as `run` does and kills it, `operator` gives orders.
+//! When all faults are over, up to [`CALM`] further lives start, one of which must complete a lot. Then `judge`
+//! compares the truth of the rig with the history.
 //!
-//! The report shows each seed that breaks a rule with the broken rules, the last lines of its trace and the command that
-//! reproduces it: the same seed gives the same trace, bit for bit.
+//! For each seed that breaks a rule, the report shows the broken rules, the last lines of its trace and the command
+//! that reproduces it: the same seed gives the same trace, bit for bit.
 
 mod judge;
 mod life;
@@ -36,9 +36,10 @@ use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
 
-/// Largest number of lives after the faults; one of them must complete its lot. The first may have to discharge parts.
+/// Greatest number of lives after the faults; one of them must complete its lot. The first may have to discharge parts
+/// left inside.
 const CALM: u64 = 3;
-/// Number of parts of a lot without faults.
+/// Number of parts in the lot of a life after the faults.
 const CALM_PARTS: u64 = 2;
 
 /// A storm: the inputs that all seeds share.
@@ -77,9 +78,9 @@ impl<'a> Storm<'a> {
         })
     }
 
-    /// Runs every seed, on all cores.
+    /// Runs every seed, on all processor cores.
     fn all(&self, seeds: &[u64]) -> anyhow::Result<Vec<Outcome>> {
-        // The report counts the alarms of a storm: a log line for each would bury it.
+        // The report counts the alarms of a storm; a log line for each alarm would bury the report.
         let quiet = |seed| with_default(NoSubscriber::new(), || self.one(seed));
         pool::map(seeds, pool::cores(), |seed| {
             quiet(*seed).with_context(|| format!("seed {seed}"))
@@ -195,7 +196,7 @@ impl<'a> Storm<'a> {
         })?)
     }
 
-    /// Returns the calibration of a rig without faults; the first seed that needs it makes it for all later ones.
+    /// Returns the calibration of a rig without faults; the first seed of a rig makes it, later seeds share it.
     fn calibration(&self, rig: u64, db: &Path) -> anyhow::Result<Calibration> {
         let place = usize::try_from(rig % RIGS)?;
         if let Some(known) = self.calibrations[place].get() {

@@ -1,5 +1,6 @@
-//! A simulated operator: gives sensible and random orders, refused ones included, and restarts the line from any state.
-//! Ends the program when the lot is complete or after [`LIFE_TIMEOUT`], and aborts it after as long again.
+//! A simulated operator: gives sensible and random orders, including orders that the station refuses, and restarts the
+//! line from any state. It ends the program when the lot is complete or after [`LIFE_TIMEOUT`], and aborts a program
+//! that still runs [`LIFE_TIMEOUT`] later.
 
 use crate::dice::Dice;
 use bus::Pace;
@@ -12,16 +13,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
 use units::{RigTime, Span};
 
-/// Longest time until the operator ends the program; after as long again it aborts the program.
+/// Longest time until the operator ends the program, and from there until it aborts the program.
 const LIFE_TIMEOUT: Span = Span::ms(25_000);
 
-/// Words of the orders to the rig that are not commands.
+/// Words of orders to the rig that are not PackML commands.
 const OTHER_WORDS: &[&str] = &["mode", "jog", "step", "lamp_test", "acknowledge", "shelve"];
 
 /// One order and its answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answered {
-    /// Time of the answer, rig time of the life.
+    /// Time of the answer, in rig time of the life.
     pub at: RigTime,
     /// PackML state before the order.
     pub state: String,
@@ -39,9 +40,9 @@ pub struct Operator {
     pub orders: mpsc::Sender<OrderRequest>,
     /// Clock of the rig time.
     pub pace: Pace,
-    /// Set to end the program once the parts inside are finished.
+    /// Request to end the program once the parts inside are finished.
     pub stop: Arc<AtomicBool>,
-    /// Set to end the program at once.
+    /// Request to end the program at once.
     pub abort: Arc<AtomicBool>,
     /// Random numbers for orders and waits.
     pub dice: Dice,
@@ -72,7 +73,7 @@ impl Operator {
             }
         }
         self.stop.store(true, Ordering::Release);
-        // A line that waits for single steps or for a magazine does not finish the parts inside by itself.
+        // A line that waits for single steps or for a magazine never finishes the parts inside by itself.
         self.pace.sleep_until(self.pace.now() + LIFE_TIMEOUT).await;
         self.abort.store(true, Ordering::Release);
     }
@@ -91,7 +92,7 @@ impl Operator {
         }
     }
 
-    /// Draws any order, or any motion by hand for the order `jog`.
+    /// Draws an order of the given word, or of a random one; also draws the mode of `mode` and the motion of `jog`.
     fn random_order(&mut self, word: Option<&str>) -> Order {
         let random_order = *self.dice.one(&[Command::NAMES, OTHER_WORDS].concat());
         let mode = *self.dice.one(Mode::NAMES);
@@ -121,7 +122,7 @@ impl Operator {
     }
 }
 
-/// Returns the order with this word; only `mode` takes the mode, only `jog` the motion. `shelve` names an unknown
+/// Returns the order with this word; only `mode` uses `mode`, only `jog` uses `motion`. `shelve` names an unknown
 /// alarm, so that the station refuses it.
 fn order(word: &str, mode: &str, motion: &str) -> Order {
     let json = match word {
@@ -133,7 +134,7 @@ fn order(word: &str, mode: &str, motion: &str) -> Order {
     serde_json::from_value(json).unwrap_or_else(|error| panic!("{word}: {error}"))
 }
 
-/// Returns orders that make sense in a state; an empty name means no order.
+/// Returns the orders that make sense in a state; an empty name means no order.
 fn usual_orders(state: State) -> &'static [&'static str] {
     match state {
         State::Execute => &[

@@ -12,7 +12,7 @@ use app::exit::Exit;
 /// Largest number of seeds that the report shows; the figures count all of them.
 const SHOWN: usize = 10;
 
-/// Result of one seed: counts, and the trace only of a seed that breaks a rule, since a case is large.
+/// Result of one seed: counts, and the trace only when the seed breaks a rule, because a trace is large.
 pub struct Outcome {
     pub(super) seed: u64,
     pub(super) counts: Counts,
@@ -54,7 +54,7 @@ impl Counts {
     }
 }
 
-/// Makes the report of the seeds, which took `minutes` of wall time.
+/// Makes the report of the seeds; they took `minutes` of wall time.
 pub fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
     let n = outcomes.len() as u64;
     let violations = outcomes

@@ -1,13 +1,13 @@
 //! The scenario of a seed: a rig, faults of world and line, and the lives of the controller. A life is one run of the
 //! controller program, from its start to its end or kill.
 //!
-//! No fault lasts beyond [`CEASES_US`] of rig time: the study then cancels each fault whose part has not come yet. Lives
-//! that start later have no faults.
+//! No fault lasts beyond [`CEASES_US`] of rig time: the study then also cancels each fault that still waits for its
+//! part. Lives that start later have no faults.
 
 use crate::dice::Dice;
 use machine::rig::wiring::Wiring;
 
-/// Number of rigs that the seeds share; the study calibrates each once.
+/// Number of different rigs; the seeds share them, so that the study calibrates each only once.
 pub const RIGS: u64 = 8;
 /// End of all faults, microseconds of rig time.
 pub const CEASES_US: u64 = 16_000_000;
@@ -16,7 +16,7 @@ pub const DISTURBED_US: u64 = 3_000_000;
 /// Keys of the world that differ from the default: more defects, so that parts go to every bin.
 pub const WORLD: &str = "[defects]\nrate_pct = 25.0\n\n[mechanism]\nfault_hold_ms = 3000.0\n";
 
-/// Faults that happen once, when the part with the drawn number comes.
+/// Faults that happen once, at the part with the drawn number.
 const AT_A_PART: [&str; 10] = [
     "jam_pusher",
     "stuck_clamp",
@@ -31,7 +31,7 @@ const AT_A_PART: [&str; 10] = [
 ];
 /// Faults of safety inputs, at an instant; the rig must drive no motion during them.
 const SAFETY: [&str; 3] = ["door", "estop", "air"];
-/// Faults that hit single replies or requests; the scenario draws a probability for each that it uses.
+/// Faults that hit single replies or requests; the scenario draws a probability for each fault that it uses.
 const OF_A_REPLY: [&str; 8] = [
     "drop", "deaf", "truncate", "late", "flip", "noise", "garble", "delay",
 ];
@@ -50,7 +50,7 @@ pub struct Life {
 }
 
 impl Life {
-    /// Returns a life without operator and kill.
+    /// Returns a life without operator and without kill.
     pub fn calm(count: u64, pause_us: u64) -> Self {
         Self {
             count,
@@ -61,18 +61,18 @@ impl Life {
     }
 }
 
-/// Everything that a seed determines.
+/// Everything that a seed of the storm determines.
 #[derive(Debug, Clone)]
 pub struct Scenario {
-    /// Seed of the rig, from 1 to [`RIGS`]; it determines errors of the modules and stroke times.
+    /// Seed of the rig, from 1 to [`RIGS`]; it determines the errors of the modules and the stroke times.
     pub rig: u64,
-    /// Whether the first life begins without a calibration, and measures references and reference parts first.
+    /// Whether the first life begins without a calibration and therefore measures references and reference parts first.
     pub uncalibrated: bool,
     /// Faults of the simulated rig, in the form of `--fault`.
     pub faults: Vec<String>,
     /// Instants at which a safety input is disturbed, microseconds.
     pub disturbed_us: Vec<u64>,
-    /// Whether a line may be deaf or slow for a while, so that outputs wait for the watchdogs of their modules.
+    /// Whether a line may be deaf or slow for a while: outputs then wait for the watchdogs of their modules.
     pub lines_disturbed: bool,
     /// Lives while faults happen.
     pub lives: Vec<Life>,
@@ -112,7 +112,7 @@ impl Scenario {
         if dice.once_in(3) {
             let at_us = dice.between(0, CEASES_US - DISTURBED_US);
             let fault = *dice.one(&SAFETY);
-            // Two disturbances of one input would both end with the first of them.
+            // Two overlapping disturbances of one input would both end when the first one ends.
             if self.faults.iter().any(|it| it.starts_with(fault)) {
                 return;
             }

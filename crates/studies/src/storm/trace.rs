@@ -1,4 +1,5 @@
-//! The trace of a seed, as lines in order of time: lives, orders and answers, alarms, rows, and paths of the bodies.
+//! The trace of a seed, as lines in order of time: lives, orders with their answers, alarms, rows, and paths of the
+//! bodies.
 
 use super::judge::{Case, rig_us, seconds};
 

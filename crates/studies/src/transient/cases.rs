@@ -1,7 +1,7 @@
 //! The cases file: parameters of a relay, and the excitations of its coil.
 //!
 //! ```text
-//! parameters         SI units; a name left out is that of the default relay; T in Celsius
+//! parameters         SI units, T in Celsius; a missing parameter has the value of the default relay
 //! mu0                optional
 //! cases[].name
 //!        .changed    parameters of this case that differ
@@ -34,7 +34,7 @@ pub struct Case {
     pub end_s: f64,
 }
 
-/// Keys of a case; the reader ignores the second half, a note and answers.
+/// Keys of a case; the reader ignores the second half: a note, and answers.
 const KEYS: &[&str] = &[
     "name",
     "changed",

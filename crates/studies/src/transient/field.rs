@@ -19,7 +19,7 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Returns the error that names path, found value and expected value.
+    /// Returns an error that names the path, the found value and the expected one.
     pub fn wrong(&self, expected: &str) -> anyhow::Error {
         let path = if self.path.is_empty() {
             "the file"
@@ -38,7 +38,7 @@ impl<'a> Field<'a> {
         anyhow!("{path}: found {found}, expected {expected}")
     }
 
-    /// Returns the path of a member.
+    /// Returns the path of the member `key`.
     fn below(&self, key: &str) -> String {
         let dot = if self.path.is_empty() { "" } else { "." };
         format!("{}{dot}{key}", self.path)

@@ -1,5 +1,5 @@
-//! AC source of the 61500 class. It drives a sine without limit of the current; other shapes, couplings and modes are
-//! refused.
+//! AC source of the 61500 class. It drives a sine without a current limit; it refuses other shapes, couplings and
+//! modes.
 
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting};
@@ -11,7 +11,7 @@ use crate::scpi::status::Failure;
 
 /// Time of `*RST`, microseconds.
 const RESET_US: u64 = 7_000_000;
-/// Cycles and samples of a measurement.
+/// Length of a measurement in cycles; the next constant is its number of samples.
 const CYCLES: f64 = 5.0;
 const SAMPLES: u32 = 500;
 /// Highest voltage of the lower range, volts rms.
@@ -43,12 +43,12 @@ const TABLE: &[Setting] = &[
     Setting("mode", ":OUTPut:MODE", Choice(&["FIXed"]), 1),
 ];
 
-/// The source with its output and a measurement in work.
+/// The source with its output and the measurement in progress.
 pub(super) struct AcSource {
     body: Body,
     job: Option<Window>,
     last: Option<Window>,
-    /// Instant at which the output goes off after a command, at the programmed phase.
+    /// Instant at which the output switches off after a command: the programmed phase.
     off_us: Option<u64>,
 }
 
@@ -62,7 +62,7 @@ impl AcSource {
         }
     }
 
-    /// Connects the output; `starts` begins at the programmed phase, otherwise the sine goes on.
+    /// Connects the output; with `starts` the sine begins at the programmed phase, otherwise it continues.
     fn drive(&mut self, circuit: &mut dyn Circuit, starts: bool) {
         let settings = &self.body.settings;
         if !settings.on("output") {
@@ -88,7 +88,7 @@ impl AcSource {
         circuit.drive(self.body.at, drive);
     }
 
-    /// Returns the instant at which the output reaches the phase at which it goes off; 360 degrees mean at once.
+    /// Returns the instant at which the output reaches its switch-off phase; 360 degrees mean at once.
     fn off_at(&self, now_us: u64, circuit: &dyn Circuit) -> u64 {
         let phase_off = self.body.settings.number("phase_off");
         if phase_off >= 360.0 {
@@ -98,7 +98,7 @@ impl AcSource {
         now_us + (left_deg / (360e-6 * self.body.settings.number("hz"))) as u64
     }
 
-    /// Checks whether voltage and frequency are within the limits that are set.
+    /// Checks whether voltage and frequency are within the present limits.
     fn is_allowed(&self) -> bool {
         let settings = &self.body.settings;
         let most_v = match settings.choice("volt_range") {

@@ -1,4 +1,4 @@
-//! Digitizer of 12 bits and four channels, in two dialects. Its channels are coupled to DC.
+//! Digitizer with 12 bits and four DC-coupled channels, in two command dialects.
 
 use std::collections::VecDeque;
 
@@ -11,11 +11,11 @@ use crate::scpi::status::Failure;
 
 /// Number of channels.
 pub(super) const CHANNELS: usize = 4;
-/// Horizontal divisions of the record.
+/// Number of horizontal divisions of the screen; they span the record.
 const HORIZONTAL: f64 = 10.0;
 /// Time to send one byte of a block, microseconds.
 const BYTE_US: f64 = 0.4;
-/// Time after which automatic triggering needs no trigger, microseconds.
+/// Time after which automatic triggering ends without a trigger event, microseconds.
 const AUTO_US: u64 = 50_000;
 
 /// Command set.
@@ -80,7 +80,7 @@ const TABLE: &[Setting] = &[
     Setting("preset", ":SYSTem:PRESet", Ignored, 1),
 ];
 
-/// An acquisition in work.
+/// An acquisition in progress.
 struct Capture {
     next_us: u64,
     step_us: u64,
@@ -88,10 +88,11 @@ struct Capture {
     before: usize,
     /// Samples of every channel, oldest first, as converter codes.
     samples: VecDeque<[u16; CHANNELS]>,
-    /// Volts of the sample before above the trigger level.
+    /// Volts by which the trigger source exceeded the trigger level at the previous sample, positive in the direction
+    /// of the slope.
     previous_v: Option<f64>,
     is_triggered: bool,
-    /// Instant from which the acquisition needs no trigger; `None` for never.
+    /// Instant from which the acquisition triggers without an event; `None` when it always needs one.
     force_us: Option<u64>,
 }
 
@@ -103,14 +104,14 @@ pub(super) struct Digitizer {
     front_end: FrontEnd,
     capture: Option<Capture>,
     memory: Vec<[u16; CHANNELS]>,
-    /// Front end with which the record in memory ended.
+    /// Front end at the end of the record in memory.
     recorded: FrontEnd,
     step_us: u64,
     before: usize,
 }
 
 impl Digitizer {
-    /// Creates a digitizer; channels that are not given see one pair of terminals each.
+    /// Creates a digitizer; a channel that `channels` lacks sees its default pair of terminals.
     pub(super) fn new(body: Body, channels: &[Channel], dialect: Dialect) -> Self {
         let spare = [
             Terminal::Pulse,
@@ -134,7 +135,7 @@ impl Digitizer {
         }
     }
 
-    /// Starts an acquisition; `auto` ends without trigger too.
+    /// Starts an acquisition; with `auto` it also ends without a trigger event.
     fn start(&mut self, now_us: u64, auto: bool) {
         let points = self.body.settings.number("depth") as usize;
         let range_s = self.body.settings.number("time_scale") * HORIZONTAL;
@@ -164,7 +165,7 @@ impl Digitizer {
         index.unwrap_or_default()
     }
 
-    /// Returns the range of the source of waveforms: of the record, before the first one that of the settings.
+    /// Returns the range of the waveform source: that of the record, or of the settings before the first record.
     fn range(&self) -> &Range {
         let front_end = match self.memory.is_empty() {
             true => &self.front_end,
@@ -173,13 +174,13 @@ impl Digitizer {
         &front_end.ranges[self.source()]
     }
 
-    /// Returns the factor between a code of the converter and a step of the transferred data.
+    /// Returns the number of converter codes per step of the transferred data.
     fn coarse(&self) -> f64 {
         let is_byte = self.body.settings.choice("format") == "BYTE";
         match (is_byte, self.dialect) {
             (true, _) => 16.0,
             (false, Dialect::Rigol) => 1.0,
-            // The codes fill the upper bits of a word.
+            // The codes occupy the upper bits of a word.
             (false, Dialect::Keysight) => 1.0 / 16.0,
         }
     }
@@ -248,7 +249,7 @@ impl Digitizer {
         Ok(Outcome::Block(block(&bytes, digits), busy_us))
     }
 
-    /// Keeps settings consistent that two commands reach.
+    /// Updates the settings that depend on the changed one, because several commands set the same quantity.
     fn follow(&mut self, Changed { key, channel, .. }: Changed) {
         let settings = &mut self.body.settings;
         match key {
@@ -338,7 +339,7 @@ impl Instrument for Digitizer {
                 self.start(at.now_us, is_auto && has(":RUN"));
                 Ok(done)
             }
-            // No further command runs before the record is complete.
+            // No further command runs until the record is complete.
             false if has(":DIGitize") && !is_rigol => {
                 self.start(at.now_us, is_auto);
                 Ok(Outcome::AfterJob)
@@ -390,8 +391,8 @@ impl Instrument for Digitizer {
 }
 
 impl Capture {
-    /// Takes a sample, with the volts of the trigger source above the level in the direction of the slope; true when the
-    /// record is complete.
+    /// Stores one sample; `above_v` is the height of the trigger source above the level, positive in the direction of
+    /// the slope. Returns true when the record is complete.
     fn take(&mut self, codes: [u16; CHANNELS], above_v: f64, now_us: u64) -> bool {
         self.samples.push_back(codes);
         self.next_us += self.step_us;

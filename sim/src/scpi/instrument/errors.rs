@@ -1,4 +1,4 @@
-//! Errors of an instrument: individual ones, drawn once, and noise.
+//! Errors of an instrument: individual errors, drawn once, and noise.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -7,7 +7,7 @@ use rand_distr::StandardNormal;
 /// Limits of error of one function at one range.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
-    /// Part of the reading.
+    /// Gain error, fraction of the reading.
     pub(super) gain: f64,
     /// Offset, in the unit of the reading.
     pub(super) offset: f64,
@@ -55,7 +55,7 @@ impl Errors {
         value * gain + self.offset[function] * accuracy.offset + noise
     }
 
-    /// Adds the errors of a function to a true root mean square, which stays above 0: the noise has one of its own.
+    /// Adds the errors of a function to a true rms value; the noise adds in squares, so the result stays above 0.
     pub(super) fn apply_rms(&mut self, function: usize, accuracy: Accuracy, value: f64) -> f64 {
         if self.exact {
             return value;

@@ -1,4 +1,4 @@
-//! Front end of a digitizer: probes, ranges, converter and trigger as the settings make them, ready for every sample.
+//! Front end of a digitizer: probes, ranges, converter and trigger, precomputed from the settings for every sample.
 
 use super::Channel;
 use super::digitizer::{CHANNELS, Dialect, SOURCES};
@@ -6,9 +6,9 @@ use super::errors::{Accuracy, Errors};
 use super::settings::Settings;
 use crate::scpi::circuit::{Circuit, Terminal};
 
-/// Vertical divisions of the range.
+/// Number of vertical divisions that span the range.
 pub(super) const VERTICAL: f64 = 8.0;
-/// Codes of the converter.
+/// Number of codes of the converter.
 pub(super) const CODES: f64 = 4096.0;
 
 /// Range of one channel.
@@ -34,7 +34,8 @@ pub(super) struct FrontEnd {
 }
 
 impl FrontEnd {
-    /// Reads the settings. Keysight centres the screen on its offset, Rigol adds it.
+    /// Creates the front end from the settings. Keysight centres the screen on its offset, Rigol adds its offset to the
+    /// signal.
     pub(super) fn new(
         settings: &Settings,
         channels: &[Channel; CHANNELS],
@@ -61,8 +62,8 @@ impl FrontEnd {
         }
     }
 
-    /// Converts what the channels see now; returns the codes, and the volts of the trigger source above the level in the
-    /// direction of the slope.
+    /// Converts the present signals of the channels; returns the codes, and the volts by which the trigger source
+    /// exceeds the trigger level, positive in the direction of the slope.
     pub(super) fn convert(
         &self,
         errors: &mut Errors,

@@ -1,6 +1,6 @@
 //! Instruments: commands, measurements and their errors.
 //!
-//! An instrument is a table of settings and a job that measures while time passes.
+//! An instrument is a table of settings and a job: a measurement that runs while time passes.
 
 mod ac_source;
 mod digitizer;
@@ -21,16 +21,16 @@ use digitizer::Dialect;
 use errors::Errors;
 use settings::{Changed, Handled, Setting, Settings};
 
-/// Result of a command or query, with the time that it takes, microseconds.
+/// Result of a command or query, with its execution time in microseconds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// A command without reply.
     Done(u64),
-    /// A reply.
+    /// A text reply.
     Text(String, u64),
-    /// The reply is a block.
+    /// A reply as a block.
     Block(Vec<u8>, u64),
-    /// The result needs the end of the present job; [`Instrument::fetch`] gives it.
+    /// The result needs the end of the present job; [`Instrument::fetch`] then returns it.
     AfterJob,
 }
 
@@ -47,37 +47,37 @@ pub trait Instrument: Send {
     /// Returns identity, settings, latency and errors.
     fn body(&mut self) -> &mut Body;
 
-    /// Returns to the settings of `*RST` and disconnects sources; returns the time that it takes, microseconds.
+    /// Restores the settings of `*RST` and disconnects sources; returns the execution time, microseconds.
     fn reset(&mut self, at: &mut Moment<'_>) -> u64;
 
-    /// Follows a setting that a command has changed; returns the time that it takes beside that of a command,
+    /// Carries out the effect of a changed setting; returns the time that this takes in addition to the command itself,
     /// microseconds.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
     fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure>;
 
-    /// Performs a command or query that is neither a common one nor a setting.
+    /// Carries out a command or query that is neither a common one nor a setting.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
     fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure>;
 
-    /// Answers a query, or ends a command, that waited for the end of the job.
+    /// Answers the query, or completes the command, that waited for the end of the job.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
     fn fetch(&mut self, unit: &Unit) -> Result<Outcome, Failure>;
 
-    /// Returns the next instant at which the job acts; `None` without job.
+    /// Returns the next instant at which the job acts; `None` without a job.
     fn next_us(&self) -> Option<u64>;
 
-    /// Returns an instant before which the job does not end.
+    /// Returns an instant before which the job does not end; `None` when the job does not know it.
     fn end_us(&self) -> Option<u64> {
         self.next_us()
     }
 
-    /// Lets the job act.
+    /// Runs the step of the job that is due.
     fn tick(&mut self, at: &mut Moment<'_>);
 
     /// Executes a command or query that is no common one.
@@ -133,12 +133,12 @@ impl Model {
     }
 }
 
-/// Channel of a digitizer: what it sees, and the ratio of its probe or shunt.
+/// Channel of a digitizer: the terminals that it sees, and the ratio of its probe or shunt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channel {
     /// Terminals that the probe touches.
     pub at: Terminal,
-    /// Volts at the channel per volt at the terminals; at `load` per ampere.
+    /// Volts at the channel per volt at the terminals; at `load`, volts per ampere.
     pub ratio: f64,
 }
 
@@ -159,12 +159,12 @@ pub struct Fitting {
     pub exact: bool,
 }
 
-/// What distinguishes the models besides their commands.
+/// Properties of a model besides its commands.
 struct Kit {
     identity: &'static str,
     /// Mean time to a reply, microseconds.
     latency_us: u64,
-    /// Time of a command, microseconds.
+    /// Execution time of a command, microseconds.
     command_us: u64,
     /// Terminals to which the instrument connects, unless the file names others.
     at: Terminal,
@@ -204,7 +204,7 @@ pub fn build(model: Model, name: &str, seed: u64, fitting: Fitting) -> Box<dyn I
     }
 }
 
-/// What every instrument has.
+/// Common part of every instrument.
 pub struct Body {
     /// Reply to `*IDN?`.
     pub identity: String,
@@ -216,7 +216,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// Draws the time from the end of a query to its reply: the mean with a scatter of 10 %, microseconds.
+    /// Draws the time from the end of a query to its reply, microseconds: a mean with a scatter of 10 %.
     pub fn latency_us(&mut self) -> u64 {
         let scatter = 0.1 * self.errors.normal();
         (self.latency_us as f64 * (1.0 + scatter.clamp(-0.5, 1.0))) as u64

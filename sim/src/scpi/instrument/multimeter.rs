@@ -8,12 +8,12 @@ use crate::scpi::circuit::{Circuit, Drive, Terminal};
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
 
-/// Time of a change of function, and to choose a range by the reading, microseconds.
+/// Time to change the function, and (the next constant) to choose a range automatically, microseconds.
 const CONFIGURE_US: u64 = 40_000;
 const RANGING_US: u64 = 10_000;
-/// Time from the trigger to the window, microseconds.
+/// Time from the trigger to the start of the measuring window, microseconds.
 const TRIGGER_US: u64 = 300;
-/// Window of an AC measurement: ten cycles of 50 Hz, microseconds.
+/// Measuring window of an AC measurement, microseconds: ten cycles of 50 Hz.
 const AC_US: f64 = 200_000.0;
 /// Source of a resistance measurement.
 const OHMS_SOURCE: Drive = Drive::Current {
@@ -31,7 +31,7 @@ pub(super) const KIT: Kit = Kit {
     settings: TABLE,
 };
 
-/// Functions by header after CONFigure or MEASure, with their choice of the setting, ranges and index of errors.
+/// Functions: header after CONFigure or MEASure, choice of the setting, ranges, index of the errors.
 const FUNCTIONS: [(&str, &str, &[f64], usize); 6] = [
     ("VOLTage:DC", "VOLT", &[0.1, 1.0, 10.0, 100.0, 1000.0], 0),
     ("VOLTage:AC", "VOLT:AC", &[0.1, 1.0, 10.0, 100.0, 750.0], 1),
@@ -68,9 +68,9 @@ const TABLE: &[Setting] = &[
 pub(super) struct Multimeter {
     body: Body,
     function: usize,
-    /// Upper end of the range of each function; `None` chooses it by the reading.
+    /// Upper end of the range of each function; `None` for automatic ranging.
     ranges: [Option<f64>; FUNCTIONS.len()],
-    /// Readings still to come, and the window of the present one.
+    /// Number of readings still to come, and the window of the present one.
     job: Option<(u32, Window)>,
     armed: bool,
     readings: Vec<f64>,
@@ -121,7 +121,7 @@ impl Multimeter {
         ));
     }
 
-    /// Ends the measurement in work, if any, and disconnects the source of a resistance.
+    /// Aborts the measurement in progress, if any, and disconnects the source of a resistance measurement.
     fn stop(&mut self, circuit: &mut dyn Circuit) {
         if self.job.take().is_some() && FUNCTIONS[self.function].1.contains("RES") {
             circuit.drive(self.body.at, Drive::Open);
@@ -193,7 +193,7 @@ impl Multimeter {
         Ok(())
     }
 
-    /// Executes the commands of function and range.
+    /// Executes the commands that select function and range; returns `None` for any other command.
     fn select(
         &mut self,
         unit: &Unit,
@@ -247,7 +247,7 @@ fn function_of(name: &str) -> Option<usize> {
     FUNCTIONS.iter().position(named)
 }
 
-/// Returns the function whose range a header sets, and whether it is that of automatic ranging.
+/// Returns the function whose range a header sets, and whether the header switches automatic ranging.
 fn range_of(unit: &Unit) -> Option<(usize, bool)> {
     let all = FUNCTIONS.iter().enumerate();
     all.flat_map(|(function, it)| [(function, it.0, true), (function, it.0, false)])
@@ -263,7 +263,7 @@ fn range_of(unit: &Unit) -> Option<(usize, bool)> {
         .map(|(function, _, is_auto)| (function, is_auto))
 }
 
-/// Returns the range that holds the number of a unit.
+/// Returns the smallest range that holds the first parameter of the unit.
 fn limit(unit: &Unit, function: usize) -> Result<f64, Failure> {
     let steps = FUNCTIONS[function].2;
     let most = steps[steps.len() - 1];

@@ -1,5 +1,5 @@
-//! Function generator that sends pulses with an exact period. Other shapes than pulses, squares and a constant voltage
-//! stay off.
+//! Function generator that sends pulses with an exact period. With a shape other than pulse, square or DC the output
+//! stays off.
 
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting, Settings};
@@ -43,7 +43,7 @@ const TABLE: &[Setting] = &[
     Setting("trigger", ":TRIGger:SOURce", Choice(&["IMMediate", "EXTernal", "BUS"]), 1),
 ];
 
-/// Settings in volts, as they appear over the load that is set.
+/// Settings in volts, as they appear over the configured load.
 const VOLTS: [&str; 4] = ["high_v", "low_v", "peak_v", "offset_v"];
 
 /// The generator with its settings.
@@ -117,7 +117,7 @@ impl PulseSource {
         circuit.drive(self.body.at, Drive::Pulses(pulses));
     }
 
-    /// Keeps settings consistent that two commands reach.
+    /// Updates the settings that depend on the changed one, because several commands set the same quantity.
     fn follow(&mut self, Changed { key, before, .. }: Changed) -> Result<(), Failure> {
         let settings = &mut self.body.settings;
         let number = |settings: &Settings, key| settings.number(key);
@@ -143,7 +143,7 @@ impl PulseSource {
                     return Err(Failure::SETTINGS_CONFLICT);
                 }
             }
-            // The output stays as it is, and so do the volts over the load now set.
+            // The output voltage stays as it is; the settings change to the volts over the load now configured.
             "load" => {
                 let ratio = open_circuit(before) / open_circuit(number(settings, "load"));
                 for key in VOLTS {
@@ -163,7 +163,7 @@ impl PulseSource {
     }
 }
 
-/// Returns the ratio of the volts without load to those over a load.
+/// Returns the open-circuit voltage divided by the voltage over a load.
 fn open_circuit(load_ohm: f64) -> f64 {
     1.0 + SOURCE_OHM / load_ohm
 }

@@ -1,4 +1,4 @@
-//! Settings that a command sets and a query returns, as a table.
+//! A table of settings: commands set them, queries return them.
 
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
@@ -6,13 +6,13 @@ use crate::scpi::status::Failure;
 /// Kind of a setting, with its value after `*RST`.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
-    /// Least, most and reset value.
+    /// A number: minimum, maximum and reset value.
     Number(f64, f64, f64),
     /// A switch.
     Switch(bool),
-    /// Choices, of which the first is the reset value.
+    /// A choice of words; the first is the reset value.
     Choice(&'static [&'static str]),
-    /// Accepted, and without effect.
+    /// A command that the instrument accepts and ignores.
     Ignored,
 }
 
@@ -31,11 +31,11 @@ pub struct Changed {
     pub(super) key: &'static str,
     /// Channel from 0.
     pub(super) channel: usize,
-    /// Value before; of a choice, its index.
+    /// Value before the change; for a choice, its index.
     pub(super) before: f64,
 }
 
-/// What a unit has done with a setting.
+/// Result of a unit that names a setting.
 pub(super) enum Handled {
     /// Reply to a query.
     Query(String),
@@ -140,7 +140,7 @@ fn taken(unit: &Unit, kind: Kind) -> Result<f64, Failure> {
     }
 }
 
-/// Returns the short form of a choice: capitals and digits.
+/// Returns the short form of a choice: its capital letters and digits.
 fn short(choice: &str) -> String {
     choice.chars().filter(|c| !c.is_ascii_lowercase()).collect()
 }

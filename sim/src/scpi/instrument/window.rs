@@ -1,8 +1,8 @@
-//! Samples of a measurement, and their means.
+//! Measuring window: samples and their means.
 
 use crate::scpi::circuit::Reading;
 
-/// Evenly spaced samples, of which the last one ends the window.
+/// Evenly spaced samples; the last one ends the window.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Window {
     from_us: u64,
@@ -15,7 +15,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// Opens a window at `from_us`, `for_us` long.
+    /// Opens a window of `for_us` microseconds that begins at `from_us`.
     pub(super) fn open(from_us: u64, for_us: f64, samples: u32) -> Self {
         Self {
             from_us,
@@ -28,7 +28,7 @@ impl Window {
         }
     }
 
-    /// Takes a sample; true when it was the last one.
+    /// Adds a sample; returns true when it was the last one.
     pub(super) fn take(&mut self, reading: Reading) -> bool {
         self.sum.volts += reading.volts;
         self.sum.amps += reading.amps;
@@ -39,7 +39,7 @@ impl Window {
         self.taken == self.samples
     }
 
-    /// Returns the length, microseconds.
+    /// Returns the length of the window, microseconds.
     pub(super) fn for_us(&self) -> u64 {
         self.for_us as u64
     }

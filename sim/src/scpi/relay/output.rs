@@ -1,4 +1,4 @@
-//! A solid-state relay in its circuit, stepped through time: light, firing, current zeros, heat.
+//! A solid-state relay in its circuit, simulated step by step: light, firing, current zeros, heat.
 
 use super::truth::{Kind, REFERENCE_C, Truth};
 use crate::scpi::circuit::{Circuit, Drive, Reading, Terminal, over_resistor};
@@ -6,16 +6,17 @@ use crate::scpi::line::Line;
 use crate::scpi::passive::CLAMP_V;
 use crate::scpi::sources::Sources;
 
-/// Longest step while the line is on, and while it is off, microseconds.
+/// Longest time step while the line is on, microseconds; the next constant applies while it is off.
 const STEP_US: u64 = 20;
 const IDLE_STEP_US: u64 = 100_000;
-/// Time constants of junction and case, seconds, and the resistance of the case, kelvin per watt.
+/// Time constant of the junction, seconds; the next two are that of the case, and its thermal resistance, kelvin per
+/// watt.
 const JUNCTION_S: f64 = 0.02;
 const CASE_S: f64 = 20.0;
 const CASE_K_PER_W: f64 = 8.0;
 /// Resistance of a shorted output, ohms.
 const SHORT_OHM: f64 = 0.1;
-/// Least voltage that returns at a current zero and can fire the output again, volts.
+/// Least voltage returning at a current zero that can fire the output again, volts.
 const COMMUTATION_V: f64 = 50.0;
 
 /// A relay with its sources and its state.
@@ -24,12 +25,12 @@ pub struct SolidState {
     sources: Sources,
     load_ohm: f64,
     load_h: f64,
-    /// Light over threshold: fires from 1 up, falls off below the hysteresis.
+    /// Light of the LED relative to the threshold: the output fires from 1 upwards and turns off below the hysteresis.
     light: f64,
     lit: bool,
     /// Sign of the half cycle that conducts, 0 while blocked.
     conducts: f64,
-    /// True when the half cycle before conducted, so that this one fires at the retrigger voltage.
+    /// True when the previous half cycle conducted: this one then fires at the retrigger voltage.
     again: bool,
     /// Sign of the half cycle that fires without light after a failed commutation; 0 for none.
     refire: f64,
@@ -105,7 +106,7 @@ impl SolidState {
         }
     }
 
-    /// Moves the light towards the input current; the exponential is exact for a constant input.
+    /// Moves the light towards the value of the input current; the exponential is exact for a constant input.
     fn shine(&mut self, dt_s: f64) {
         let threshold_a =
             self.truth.threshold_a * (1.0 + 5e-3 * (self.temperature_c() - REFERENCE_C));
@@ -140,7 +141,7 @@ impl SolidState {
         }
     }
 
-    /// Returns the knee voltage for a sign of the current, volts.
+    /// Returns the knee voltage for the given sign of the current, volts.
     fn knee_v(&self, sign: f64) -> f64 {
         let knee_v = self.truth.knee_v[usize::from(sign < 0.0)];
         knee_v - 1.5e-3 * (self.temperature_c() - REFERENCE_C)
@@ -156,7 +157,7 @@ impl SolidState {
         }
     }
 
-    /// Returns the current of the blocked output at a voltage with its slope, amperes.
+    /// Returns the current through the blocked output at a voltage with the given slope, amperes.
     fn leakage_a(&self, volts: f64, slope_v_per_s: f64) -> f64 {
         let junction =
             self.truth.leakage_a * 2f64.powf((self.temperature_c() - REFERENCE_C) / 10.0);
@@ -166,7 +167,7 @@ impl SolidState {
     }
 
     /// Returns the current of the blocked output in series with the load, amperes. The capacitance charges through the
-    /// load, so the output follows the line by their time constant, which is short against a cycle.
+    /// load, so the output voltage lags the line by the RC time constant, which is short against a cycle.
     fn blocked_a(&self) -> f64 {
         let lag_us = self.load_ohm * self.truth.capacitance_f * 1e6;
         let line_v = |ahead_us: f64| self.sources.line.volts(ahead_us - lag_us);
@@ -204,8 +205,8 @@ impl SolidState {
         }
     }
 
-    /// Checks whether the voltage that returns at a current zero rises too fast for the triac to block: an inductive load
-    /// and the capacitance over the output swing it up. Over a resistive load it returns with the line.
+    /// Checks whether the voltage that returns at a current zero rises too fast for the triac to block. An inductive
+    /// load and the capacitance over the output make it swing up; over a resistive load it returns with the line.
     fn fails_to_commutate(&self, line_v: f64) -> bool {
         let swing_s = (self.load_h * self.truth.capacitance_f).sqrt();
         line_v.abs() > COMMUTATION_V
@@ -227,7 +228,8 @@ impl SolidState {
         } else {
             0.0
         };
-        // A half cycle after conduction starts below the inhibit voltage, so that only the first one meets it.
+        // After a conducting half cycle the line starts below the inhibit voltage: only the first half cycle meets this
+        // limit.
         let enabled = line_v.abs() < self.truth.inhibit_v || self.again;
         if enabled && amps > self.truth.latching_a && line_v.abs() >= least_v {
             self.conducts = sign;
@@ -240,7 +242,8 @@ impl SolidState {
         }
     }
 
-    /// Returns the longest step from now, microseconds: to the next edge of the pulses, and short while the line is on.
+    /// Returns the longest permitted time step, microseconds: up to the next edge of the pulses, and short while the
+    /// line is on.
     fn step_us(&self) -> u64 {
         let by_line = if self.has_line() && self.is_ac() {
             STEP_US
@@ -265,7 +268,7 @@ impl SolidState {
                 Reading { volts, amps }
             }
             Drive::Current { amps, limit_v } => {
-                // Below the leakage at the limit, the voltage is as many times lower as the current.
+                // Below the leakage at the voltage limit, voltage and current decrease in proportion.
                 let limit_v = limit_v.copysign(amps);
                 let leakage_a = self.leakage_a(limit_v, 0.0);
                 let part = (amps / leakage_a).min(1.0);

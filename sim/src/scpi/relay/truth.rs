@@ -6,17 +6,17 @@ use rand_distr::StandardNormal;
 use crate::module::tolerances::stream;
 use crate::table::read_words;
 
-/// Thermal voltage times emission coefficient of the input diode, volts.
+/// Thermal voltage times the emission coefficient of the input diode, volts.
 const SLOPE_V: f64 = 1.8 * 0.02585;
-/// Current at which the forward voltage of the diode is stated, amperes.
+/// Current at which the data sheet states the forward voltage of the diode, amperes.
 const STATED_A: f64 = 0.01;
-/// Reverse current of the input, amperes, and the voltage at which it settles, volts.
+/// Reverse current of the input, amperes; the next constant is the voltage at which it settles.
 const REVERSE_A: f64 = 1e-6;
 const REVERSE_V: f64 = 0.1;
 /// Reference temperature, degrees Celsius.
 pub(super) const REFERENCE_C: f64 = 25.0;
 
-/// What the instruments connect to.
+/// Kind of part in the circuit of the instruments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Resistors instead of a relay.
@@ -82,7 +82,7 @@ impl Defect {
     pub fn fits(self, kind: Kind) -> bool {
         match self {
             Self::NoZeroCross => kind == Kind::AcZeroCross,
-            // An AC output waits for the line, which hides these delays.
+            // An AC output waits for the line anyway, which hides these delays.
             Self::SlowTurnOn | Self::SlowTurnOff => kind == Kind::Dc,
             Self::HalfWave | Self::WrongSnubber | Self::OpenSnubber | Self::WeakCommutation => {
                 kind != Kind::Dc
@@ -121,13 +121,13 @@ pub struct Truth {
     pub on_ohm: f64,
     /// Threshold voltage of the triac for the positive and the negative half cycle, volts.
     pub knee_v: [f64; 2],
-    /// Current that must flow to fire, amperes.
+    /// Latching current: the load current that must flow for the triac to fire and stay on, amperes.
     pub latching_a: f64,
-    /// Current below which the triac goes off, amperes.
+    /// Holding current: the load current below which the triac turns off, amperes.
     pub holding_a: f64,
-    /// Voltage beyond which a zero-cross relay does not fire, volts.
+    /// Inhibit voltage: line voltage beyond which a zero-cross relay does not fire, volts.
     pub inhibit_v: f64,
-    /// Voltage at which each later half cycle fires, volts.
+    /// Line voltage at which each half cycle after the first fires, volts.
     pub retrigger_v: f64,
     /// Capacitance over the output, farads.
     pub capacitance_f: f64,
@@ -135,7 +135,7 @@ pub struct Truth {
     pub leakage_ohm: f64,
     /// Junction leakage at 25 degrees, amperes.
     pub leakage_a: f64,
-    /// Slope of the reapplied voltage that a commutation survives, volts per microsecond.
+    /// Greatest slope of the reapplied voltage at which the triac still turns off, volts per microsecond.
     pub commutation_v_per_us: f64,
     /// Thermal resistance from junction to case, kelvin per watt.
     pub junction_k_per_w: f64,
@@ -148,7 +148,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Draws a relay.
+    /// Draws a relay of a kind from its seed; `defect` then changes its values.
     pub fn draw(kind: Kind, defect: Option<Defect>, seed: u64) -> Self {
         let mut rng = stream(seed, "solid-state relay");
         let mut normal = || rng.sample::<f64, _>(StandardNormal).clamp(-3.0, 3.0);
@@ -176,8 +176,8 @@ impl Truth {
                 spread(knee_v, 0.01, normal()),
                 spread(knee_v, 0.01, normal()),
             ],
-            // Light keeps the gate driven, so the small currents of the driver count: over a load of 2.3 kohm the 40 mA of
-            // a power triac would not flow within the inhibit window.
+            // Light keeps the gate driven, so only the small latching current of the driver counts: with a load of 2.3
+            // kohm the 40 mA of a power triac would not flow within the inhibit window.
             latching_a: 1e-3,
             holding_a: 6e-4,
             inhibit_v: match kind {
@@ -238,7 +238,7 @@ impl Truth {
         }
     }
 
-    /// Returns the input current at the voltage of a source with a series resistance, amperes.
+    /// Returns the input current that a source of `volts` with a series resistance drives, amperes.
     pub fn input_a(&self, volts: f64, source_ohm: f64, temperature_c: f64) -> f64 {
         if self.open_led {
             return 0.0;
@@ -249,8 +249,8 @@ impl Truth {
         let series_ohm = self.series_ohm + source_ohm;
         let forward_v = self.forward_at(temperature_c);
         let stated = STATED_A.ln();
-        // Both the resistor alone and the diode alone draw more than the two in series; from there Newton's method
-        // falls monotonically to the current, in the logarithm of the current.
+        // The resistor alone and the diode alone each draw more than both in series. From the smaller of these currents
+        // Newton's method falls monotonically to the solution, in the logarithm of the current.
         let by_resistor = (volts / series_ohm).ln();
         let mut log_a = by_resistor.min(stated + (volts - forward_v) / SLOPE_V);
         for _ in 0..6 {
@@ -261,14 +261,14 @@ impl Truth {
         log_a.exp()
     }
 
-    /// Returns the input voltage of a current, volts; infinite where no voltage drives so much.
+    /// Returns the input voltage at a current, volts; infinite when no voltage drives that current.
     pub fn input_v(&self, amps: f64, temperature_c: f64) -> f64 {
         if amps == 0.0 {
             0.0
         } else if self.open_led {
             f64::INFINITY.copysign(amps)
         } else if amps < 0.0 {
-            // The logarithm is not a number below the reverse current.
+            // Below the reverse current the logarithm is undefined.
             REVERSE_V * (1.0 + amps / REVERSE_A).max(0.0).ln()
         } else {
             let forward_v = self.forward_at(temperature_c);

@@ -6,8 +6,8 @@ use crate::world::signal::{Out, Quantity};
 use crate::world::specimen::Specimen;
 
 impl Board {
-    /// Returns a quantity in its own unit, before the gain of its terminal; a coil voltage is divided by the factor of
-    /// the supply range.
+    /// Returns a quantity in its own unit, before the gain of its terminal; a coil voltage is already divided by the
+    /// factor of the supply range.
     pub fn quantity(&self, quantity: Quantity, part: Option<&Specimen>) -> f64 {
         match quantity {
             Quantity::CoilVoltage | Quantity::CoilVoltageFine => {
@@ -28,7 +28,7 @@ impl Board {
         volts.clamp(-self.table.input_limit_v, self.table.input_limit_v)
     }
 
-    /// Returns the voltage at which the zener clamps, V: it scales with the range of the supply.
+    /// Returns the clamping voltage of the zener suppression, V: it scales with the range of the supply.
     pub(super) fn zener_v(&self) -> f64 {
         self.table.zener_v * self.supply.range().factor
     }
@@ -46,8 +46,8 @@ impl Board {
         })
     }
 
-    /// Returns the supply voltage that reaches the pins of a coil, behind the film on its probes. The model ignores the
-    /// effect of the film on L/R, one percent at 4 ohm.
+    /// Returns the supply voltage that reaches the pins of a coil, behind the film on the coil probes. The model
+    /// ignores the effect of the film on L/R, one percent at 4 ohm.
     pub(super) fn coil_input_v(&self, coil_ohm: f64) -> f64 {
         let share = 1.0 / (1.0 + self.film_ohm / coil_ohm);
         self.supply.limited_v(coil_ohm + self.film_ohm) * share
@@ -114,7 +114,7 @@ impl Board {
         (self.contact_a(part) + monitor_a) * ohm + emf
     }
 
-    /// Returns the change of the EMF since the selected contact closed, volts.
+    /// Returns the drift of the thermal EMF since the selected contact closed, volts.
     fn emf_drift_v(&self) -> f64 {
         let closed_us = self
             .closed_since_us

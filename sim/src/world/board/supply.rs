@@ -1,8 +1,8 @@
 //! The coil supply of the interface board: three sources behind an amplifier with ranges.
 //!
-//! The range relays follow the command only when the drive has been off and all sources at zero for a few milliseconds;
-//! otherwise the supply keeps its range. The factor of the range multiplies the gains of the sources and the movement
-//! that starts a ramp.
+//! The range relays follow the command after the drive has been off and all sources at zero for a few milliseconds;
+//! until then the supply keeps its range. The factor of the range multiplies the gains of the sources and the change of
+//! voltage that starts a ramp.
 
 use crate::table::read_fields;
 use crate::truth::Overdrive;
@@ -35,7 +35,7 @@ read_fields!(SupplyRange {
 pub struct CoilSupply {
     ranges: Vec<SupplyRange>,
     range: SupplyRange,
-    /// Range that the relays are moving to, and the instant of arrival, microseconds.
+    /// Range that the relays are moving to, and the instant at which they reach it, microseconds.
     change: Option<(SupplyRange, f64)>,
     change_us: f64,
     zero_mv: f64,
@@ -88,7 +88,7 @@ impl CoilSupply {
         away && !before
     }
 
-    /// Makes the present voltage the level from which a ramp starts.
+    /// Takes the present voltage as the level from which a ramp starts.
     pub fn arm(&mut self) {
         self.arm_level_v = self.volts();
         self.moved = false;
@@ -115,7 +115,8 @@ impl CoilSupply {
 
     /// Records an overdrive when it begins; `on_coil` means that the drive reaches a coil.
     pub fn watch(&mut self, now_us: f64, commands: Commands, on_coil: bool) {
-        // The drive may outlast its command while the contact source switches off first; that is no new drive.
+        // The drive may outlast its command while the contact source switches off first: that does not count as an
+        // overdrive.
         let excess = self
             .commanded(commands)
             .filter(|_| on_coil && commands.is_on(Out::CoilDrive))
@@ -141,7 +142,7 @@ impl CoilSupply {
         self.change.map(|(_, at_us)| at_us)
     }
 
-    /// Ends a change of range that is due; returns true if one was.
+    /// Completes a change of range that is due; returns true when there was one.
     pub fn expire(&mut self, now_us: f64) -> bool {
         let due = self.change.take_if(|(_, at_us)| *at_us <= now_us);
         if let Some((range, _)) = due {
@@ -160,7 +161,7 @@ impl CoilSupply {
         self.volts_in(self.range)
     }
 
-    /// Returns the voltage into a resistance, V: the current limit of the range may reduce it.
+    /// Returns the voltage into a resistance, V, reduced where the range limits the current.
     pub fn limited_v(&self, ohm: f64) -> f64 {
         self.volts().min(self.range.max_ma * 1e-3 * ohm)
     }
@@ -170,7 +171,7 @@ impl CoilSupply {
         (sum * range.factor).clamp(0.0, range.max_v)
     }
 
-    /// Returns the commanded range; `None` where the rig has no range of that code.
+    /// Returns the commanded range; `None` when the rig has no range of that code.
     fn commanded(&self, commands: Commands) -> Option<SupplyRange> {
         let bit = |out| u8::from(commands.is_on(out));
         let code = bit(Out::SupplyRange0) | bit(Out::SupplyRange1) << 1;
@@ -178,7 +179,7 @@ impl CoilSupply {
     }
 }
 
-/// Returns the volts that the supply gives per volt at each source's terminal; 0 for a source without a wire.
+/// Returns, for each source, the volts of the supply per volt at its terminal; 0 for a source without a wire.
 fn gains(wiring: &Wiring) -> [f64; 3] {
     let mut gains = [0.0; 3];
     for (_, wire) in wiring.sources.values().flatten() {

@@ -12,7 +12,8 @@ const PUSHER: usize = 1;
 const SORT_Z: usize = 5;
 const SORT_AXIS: usize = 7;
 
-/// Names of the bodies that stand for a part in each of its places; in the list of bodies they follow the elements.
+/// Names of the bodies that stand for a part, one for each of its places; in the list of bodies they follow the
+/// elements.
 pub const PARTS: [&str; 4] = ["part_pocket", "part_pusher", "part_nest", "part_gripper"];
 
 /// One body: its solids at rest and its motion.
@@ -21,7 +22,7 @@ pub struct Body {
     /// Name in the scene.
     pub name: String,
     solids: Vec<Solid>,
-    /// Displacement of the body per mm of travel of each actuator.
+    /// Displacement of the body per mm of travel, for each actuator.
     pub moves: [Vector; 8],
     rest_box: Aabb,
 }
@@ -45,7 +46,7 @@ impl Body {
         ways.fold(Vector::ZERO, |sum, (per_mm, mm)| sum + *per_mm * mm)
     }
 
-    /// Returns the box that encloses the body along the way between two postures.
+    /// Returns a box that encloses the body on its whole way between two postures.
     pub fn swept(&self, from: &Posture, to: &Posture) -> Aabb {
         let at = |posture| {
             let way = self.offset(posture);
@@ -55,7 +56,7 @@ impl Body {
     }
 }
 
-/// Returns the depth to which two bodies penetrate each other, mm; negative infinity when they are apart.
+/// Returns the depth to which two bodies penetrate each other in a posture, mm; negative infinity when they are apart.
 pub fn depth_mm(a: &Body, b: &Body, posture: &Posture) -> f64 {
     let (way_a, way_b) = (a.offset(posture), b.offset(posture));
     let mut depth = f64::NEG_INFINITY;
@@ -71,7 +72,7 @@ pub fn depth_mm(a: &Body, b: &Body, posture: &Posture) -> f64 {
     depth
 }
 
-/// Builds an element that moves with its actuator and with those that carry that actuator.
+/// Builds an element that moves with its own actuator and with those that carry that actuator.
 pub fn element(scene: &Scene, element: &Element) -> Body {
     let mut moves = [Vector::ZERO; 8];
     let mut rides = element.rides.as_deref();

@@ -4,9 +4,9 @@
 //! when they press into each other deeper than their pair permits; a pair that the scene omits must not touch at
 //! all. A pair that lists actuators may touch only through these.
 //!
-//! Between two events of the mechanism every motion is known. [`Bodies::watch`] reviews such an interval, for
-//! moved bodies and for pairs whose swept boxes meet, in steps of [`STEP_MM`] of the longer travel. Without the
-//! feature `bodies`, `no_bodies.rs` replaces this module.
+//! Between two events of the mechanism every motion is known. [`Bodies::watch`] checks such an interval for the pairs
+//! that move relative to each other and whose swept boxes meet, in steps of [`STEP_MM`] of their relative travel.
+//! Without the feature `bodies`, `no_bodies.rs` replaces this module.
 
 mod body;
 mod pair_limits;
@@ -23,7 +23,7 @@ use body::{Body, PARTS, depth_mm, element, parts};
 use pair_limits::{PairLimits, pair_limits};
 use scene::{Scene, Size};
 
-/// Longest travel between two checks, mm: the width of the thinnest solid of the scene.
+/// Longest relative travel between two checks, mm: the width of the thinnest solid of the scene.
 const STEP_MM: f64 = 2.0;
 /// Largest rounding error in the distance of two bodies side by side, mm.
 const ROUNDING_MM: f64 = 1e-9;
@@ -66,13 +66,13 @@ impl Bodies {
         }
     }
 
-    /// Returns the stroke of an actuator, mm; 0 for an actuator with points.
+    /// Returns the stroke of an actuator, mm; 0 for an actuator with a point table.
     pub fn stroke_mm(&self, actuator: usize) -> f64 {
         self.strokes[actuator]
     }
 
-    /// Checks the interval from `from` to `to`, in which no part changes its place; `between` gives the posture
-    /// at a fraction of it, 0 to 1. Returns a description of each new crash; `touching` holds the pairs that
+    /// Checks the interval from `from` to `to`, during which every part keeps its place; `between` returns the posture
+    /// at a fraction of the interval, 0 to 1. Returns a description of each new crash; `touching` holds the pairs that
     /// already touch.
     pub fn watch(
         &self,
@@ -119,7 +119,7 @@ impl Bodies {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Checks whether the posture has this body; a part exists at its present place only.
+    /// Checks whether the body exists in the posture: a part exists only at its present place.
     fn is_there(&self, body: usize, posture: &Posture) -> bool {
         let first = self.bodies.len() - PARTS.len();
         let there = [posture.pocket, posture.pushed, posture.nest, posture.held];

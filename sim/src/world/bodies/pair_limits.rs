@@ -1,4 +1,4 @@
-//! Permitted depth of a pair of bodies, by the actuators that press them together.
+//! Permitted penetration depth of a pair of bodies, depending on the actuators that press them together.
 
 use super::body::Body;
 use super::scene::{Rule, Scene};
@@ -13,24 +13,25 @@ pub struct PairLimits {
     by: [bool; 8],
     /// Permitted depth for any actuator, mm.
     depth_mm: f64,
-    /// Depth permitted unless another actuator moves the pair, mm, and the actuators that may press it so deep.
+    /// Greater depth, mm, and the actuators that may press the pair so deep; it applies unless another actuator moves
+    /// the pair.
     deeper: Option<(f64, [bool; 8])>,
 }
 
 impl PairLimits {
-    /// Checks whether a moved actuator moves the two bodies relative to each other.
+    /// Checks whether one of the moved actuators moves the two bodies relative to each other.
     pub fn is_moved(&self, moved: &[bool; 8]) -> bool {
         (0..ACTUATORS.len()).any(|n| self.by[n] && moved[n])
     }
 
-    /// Returns the permitted depth while these actuators move, mm; with `slack`, a grip of the pair yields without
-    /// damage.
+    /// Returns the permitted depth while these actuators move, mm. With `slack`, a grip yields without damage, and any
+    /// actuator may pull at it.
     pub fn allowed(&self, moved: &[bool; 8], slack: bool) -> f64 {
         let Some((deeper_mm, by)) = &self.deeper else {
             return self.depth_mm;
         };
         let foreign = (0..ACTUATORS.len()).any(|n| moved[n] && self.by[n] && !by[n]);
-        // A grip that yields slides without damage, whichever actuator pulls it apart.
+        // With `slack` the grip slides without damage, whichever actuator pulls the two apart.
         if foreign && !slack {
             self.depth_mm
         } else {

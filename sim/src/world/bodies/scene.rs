@@ -1,4 +1,4 @@
-//! Bodies, actuators and contact rules of the rig, read from `scene.toml` for the simulated rig alone.
+//! Bodies, actuators and contact rules of the rig; this reader of `scene.toml` serves the simulated rig only.
 
 use crate::config::{ConfigError, Files};
 use crate::table::{Entry, Read, read_fields, read_words};
@@ -8,7 +8,7 @@ use crate::table::{Entry, Read, read_fields, read_words};
 pub struct Element {
     /// Name.
     pub id: String,
-    /// Actuator that carries it.
+    /// Actuator that carries it; `None` for a fixed body.
     pub rides: Option<String>,
     /// Shape and pose.
     pub body: Body,
@@ -26,7 +26,7 @@ pub struct Body {
 /// Shapes; lengths in mm.
 #[derive(Debug, Clone)]
 pub enum Form {
-    /// Box with these half edges.
+    /// Box with these half edge lengths along x, y, z.
     Block { half: [f64; 3] },
     /// Cylinder along its own z, centred.
     Cylinder { radius: f64, height: f64 },
@@ -59,9 +59,9 @@ pub struct Actuator {
     pub id: String,
     /// Direction from rest to the far end.
     pub axis: [f64; 3],
-    /// Stroke, mm; `None` for an actuator with points.
+    /// Stroke, mm; `None` for an actuator with a point table.
     pub stroke_mm: Option<f64>,
-    /// Actuator that carries this one.
+    /// Actuator that carries this one; `None` for a fixed actuator.
     pub rides: Option<String>,
     /// Elements that move in the opposite direction.
     pub opposed: Vec<String>,
@@ -87,13 +87,13 @@ pub struct Pair {
 pub enum Rule {
     /// The bodies must not touch.
     Forbidden,
-    /// The bodies may touch.
+    /// The bodies may touch, down to the permitted depth.
     MayTouch,
     /// The bodies overlap by design and are never checked.
     Ignore,
 }
 
-/// Places of a part (middle of the lower rear edge of its body), its contact depth and the inset of its pins.
+/// Places of a part (its reference point is the middle of the lower rear edge), contact depth, and inset of the pins.
 #[derive(Debug, Clone)]
 pub struct PartPlaces {
     /// Depth up to which a contact does not count, mm.
@@ -120,7 +120,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the stroke of an actuator, mm; 0 for an actuator with points.
+    /// Returns the stroke of an actuator, mm; 0 for an actuator with a point table.
     pub fn stroke_mm(&self, actuator: &str) -> f64 {
         let own = self.actuator.iter().find(|it| it.id == actuator);
         own.and_then(|it| it.stroke_mm).unwrap_or(0.0)

@@ -7,7 +7,7 @@ use crate::world::fault::Fault;
 use crate::world::magazine::Part;
 use crate::world::signal::In;
 
-/// Moves the part of one place to another place.
+/// Moves the part out of `from` and records its arrival at the place `to`.
 fn moved(from: &mut Option<Box<Part>>, now_us: u64, to: Place) -> Option<Box<Part>> {
     let mut part = from.take()?;
     part.arrive(now_us, to);
@@ -74,7 +74,7 @@ impl Mechanism {
         self.read_code(now_us);
     }
 
-    /// Lets the code reader look at the part that has come into the pocket.
+    /// Lets the code reader read the part that has come into the pocket.
     fn read_code(&mut self, now_us: u64) {
         let (Some(reader), Some(part)) = (&self.code_reader, &self.places.pocket) else {
             return;
@@ -185,7 +185,7 @@ impl Mechanism {
         }
     }
 
-    /// Removes a carried part: it falls on the floor, or an operator takes it.
+    /// Removes a carried part: it falls to the floor, or an operator takes it away.
     pub(super) fn drop_carried(&mut self, now_us: u64) {
         if let Some(part) = moved(&mut self.places.carried, now_us, Place::Floor) {
             self.places.finish(&part);

@@ -1,4 +1,4 @@
-//! Postures of the mechanism for the detection of crashes, and the check of the motion between two of them.
+//! Postures of the mechanism for crash detection, and the check of the motion between two postures.
 
 use std::collections::BTreeSet;
 
@@ -6,21 +6,21 @@ use super::{CylinderId, Mechanism};
 use crate::world::bodies::Bodies;
 use crate::world::posture::Posture;
 
-/// Watch for crashes: the bodies, and the instant up to which they have been checked.
+/// Crash detection of the mechanism: the bodies, and the instant up to which it has checked them.
 #[derive(Debug, Clone)]
 pub(super) struct CrashWatch {
     bodies: Bodies,
     /// Last check: instant (microseconds) and posture.
     last: Option<(u64, Posture)>,
     touching: BTreeSet<(usize, usize)>,
-    /// True while the part of the pocket is still in front of the returning pusher, not yet at rest in the pocket.
+    /// True while the part that counts as in the pocket still lies in front of the returning pusher.
     pub pulled_back: bool,
     /// True when a fault makes the rising fingers leave their part in the nest.
     pub slides_off: bool,
 }
 
 impl CrashWatch {
-    /// Creates the watch before its first check.
+    /// Creates the crash detection before its first check.
     pub fn new(bodies: Bodies) -> Self {
         Self {
             bodies,
@@ -33,7 +33,7 @@ impl CrashWatch {
 }
 
 impl Mechanism {
-    /// Checks all motion since the last check. Every change of a stroke or a place must call it first.
+    /// Checks all motion since the last check. Code that changes a stroke or a place must call this first.
     pub(super) fn watch(&mut self, now_us: u64) {
         let now = self.posture(now_us);
         let Some((from_us, before)) = self.lookout.last.replace((now_us, now)) else {

@@ -8,7 +8,7 @@ use crate::world::signal::In;
 const FLICKER_US: u64 = 10_000;
 
 impl Mechanism {
-    /// Returns a signal of the mechanism; `None` for a signal of another source.
+    /// Returns a signal of the mechanism; `None` for a signal that the mechanism does not drive.
     pub fn signal(&self, signal: In, now_us: u64) -> Option<bool> {
         let rest = |s: CylinderId| Some(self.at(s).at_rest(now_us));
         let far = |s: CylinderId| Some(self.at(s).at_far(now_us));

@@ -33,7 +33,7 @@ read_fields!(Certificate {
     coil_resistance_ohm,
 });
 
-/// Reads the certificates for a nominal voltage, in the order of the file.
+/// Reads the certificates of the reference parts with this nominal voltage, in the order of the file.
 ///
 /// # Errors
 /// Fails when the file cannot be read or is not a list of certificates.

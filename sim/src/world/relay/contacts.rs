@@ -1,8 +1,8 @@
 //! Contact events that follow from the motion of the armature.
 //!
-//! A first make is the first touch of a contact after the other one was closed. It starts a new closure with a
-//! resistance of its own, and a bounce list determines its bounce until it settles. All other touches and breaks
-//! come from the motion directly, for example the flutter of a pulse that is too short.
+//! A first make is the first touch of a contact after the other one was closed. It starts a new closure with its own
+//! resistance, and a bounce list determines the bounce until the contact settles. All other makes and breaks follow the
+//! motion directly, for example the flutter after a pulse that is too short.
 
 use super::lumped::{Element, Event};
 use super::{Relay, SETTLING_US};
@@ -35,7 +35,7 @@ impl Relay {
         self.set(change.t_us, change.contact, change.closed)
     }
 
-    /// Sets the contact as the motion has it, once its closure has settled.
+    /// After the bounce list has ended, sets the contact to the state that the motion gives it.
     pub(super) fn synchronised(&mut self, t_us: f64) -> Option<Change> {
         if t_us < self.settled_us || !self.bounce.is_empty() {
             return None;

@@ -1,23 +1,23 @@
 //! Fits the parameters of the relay model to the thresholds and times of a drawn specimen.
 //!
-//! The world file draws results: thresholds, times, resistance. The model needs parameters, so the fit adjusts
-//! those of the default relay until the results match:
+//! The world file draws results: thresholds, times, resistance. The model needs parameters, so the fit adjusts those of
+//! the default relay until its results match:
 //!
-//! - spring and travel together carry the pickup threshold (both hang on the same bent part),
-//! - the reluctance of the closed iron carries the release threshold,
-//! - mass of the armature and conductance of the eddy currents carry operate and release time.
+//! - spring and travel together determine the pickup threshold (both depend on the same bent part),
+//! - the reluctance of the closed iron determines the release threshold,
+//! - mass of the armature and conductance of the eddy currents determine operate and release time.
 //!
 //! Newton's method on the exact statics fits the thresholds first; they do not depend on mass or eddy currents.
-//! Broyden's method on whole transients then fits the times. All parameters are logarithms, so none becomes
-//! negative. Of thirty drawn pairs of times about one is impossible, since a heavy armature does not fall fast; then
-//! the operate time is exact and the release time as near as possible. A slow relay has friction at its hinge, or
-//! iron that holds the flux: bisection fits that one parameter, and the other time follows.
+//! Broyden's method on whole transients then fits the times. All parameters are logarithms, so that none becomes
+//! negative. About one in thirty drawn pairs of times is impossible, because a heavy armature does not fall fast; then
+//! the operate time is exact and the release time as close as possible. A slow relay has friction at its hinge, or iron
+//! that holds the flux: bisection fits that one parameter, and the other time follows from it.
 
 use std::ops::Range;
 
 use super::lumped::{Drive, Element, Model, Parameters, Solver, State};
 
-/// Results that the fitted relay shows, at 23 C.
+/// Results that the fitted relay must show, at 23 C.
 #[derive(Debug, Clone, Copy)]
 pub struct FitTarget {
     /// Coil resistance, ohm.
@@ -43,28 +43,28 @@ pub enum TimeOrigin {
     Lot,
     /// Neither is drawn: both follow from springs and winding.
     Follows,
-    /// The lot draws the operate time; friction at the hinge makes it long.
+    /// The lot draws the operate time; friction at the hinge makes it long, and the release time follows.
     Hinge,
-    /// The lot draws the release time; iron that holds the flux makes it long.
+    /// The lot draws the release time; iron that holds the flux makes it long, and the operate time follows.
     Iron,
 }
 
-/// Relative tolerance of the transients, sufficient for a microsecond.
+/// Relative tolerance of the integration, sufficient for a microsecond.
 const RTOL: f64 = 1e-6;
-/// Relative error at which a time counts as matched, 0.5 us in 5 ms.
+/// Relative error up to which a time counts as matched: 0.5 us in 5 ms.
 const GOOD: f64 = 1e-4;
-/// Upper limit of the times of any relay, s.
+/// Upper limit of the operate time and release time of any relay, s.
 const LONGEST_S: f64 = 0.04;
 /// Largest change of a parameter from the default relay, natural logarithm.
 const FURTHEST: f64 = 3.5;
-/// Largest change of mass and eddy currents of a sound relay, natural logarithm: a factor of eight.
+/// Largest change of mass and eddy currents of a sound relay, natural logarithm: a factor of seven.
 const PLAUSIBLE: f64 = 2.0;
-/// Logarithmic slopes of operate and release time (rows) with mass and eddy currents (columns) of the default
-/// relay: the start of Broyden's method, without effect on the result.
+/// Logarithmic slopes of operate and release time (rows) over mass and eddy currents (columns) of the default relay.
+/// Broyden's method starts from them; they do not affect the result.
 const SLOPES: [[f64; 2]; 2] = [[0.25, 0.1], [0.25, 0.45]];
 
 impl FitTarget {
-    /// Returns parameters whose results are as near to the targets as the limits allow.
+    /// Returns parameters whose results are as close to the targets as the limits allow.
     pub fn fit(&self, base: &Parameters) -> Parameters {
         let mut p = *base;
         p.T = 23.0;
@@ -166,7 +166,7 @@ impl FitTarget {
         }
     }
 
-    /// Fits one time, which grows with one parameter, by that parameter alone.
+    /// Fits one time by a single parameter, with which the time grows.
     fn with_one(
         &self,
         which: usize,

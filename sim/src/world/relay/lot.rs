@@ -52,7 +52,7 @@ impl Lot {
         )
     }
 
-    /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another
+    /// Returns the reference part at an index, `None` past the last; with `other_day` the same body has another
     /// temperature.
     pub fn reference_part(
         &self,

@@ -1,12 +1,12 @@
 //! A relay on the probes: coil, armature and two contacts, moved from event to event.
 //!
-//! The five-state model of [`lumped`] moves flux, armature and leaf, with the parameters that [`fit`] finds for
-//! the specimen; [`motion`] holds the equilibrium while nothing moves. The equations therefore determine the
-//! overshoot of a ramp, the slowing near the threshold, the flutter after a short pulse and the effect of the
-//! suppression. Two properties that scatter between closures and that no lumped model gives are added: the bounce
-//! list of a first make, and the resistance of a closure. Thresholds follow the temperature of the copper and
-//! scatter between operations, since the remanence differs: a volt of remanence reduces the effective coil
-//! voltage by a volt.
+//! The five-state model of [`lumped`] moves flux, armature and leaf, with the parameters that [`fit`] finds for the
+//! specimen; [`motion`] holds the equilibrium while nothing moves. The equations therefore determine the overshoot of a
+//! ramp, the slowing near the threshold, the flutter after a short pulse and the effect of the suppression. Two
+//! properties that scatter between closures and that no lumped model gives are drawn instead: the bounce list of a
+//! first make, and the resistance of a closure. Thresholds follow the temperature of the copper. They also scatter
+//! between operations, because the remanence differs: a remanence of one volt reduces the effective coil voltage by one
+//! volt.
 
 pub mod certificate;
 mod contacts;
@@ -51,24 +51,24 @@ pub struct Relay {
     since_us: f64,
     operation_v: f64,
     closed: [bool; 2],
-    /// The contact that made last; the armature is, or was, on its side.
+    /// The contact that made last; the armature is on its side, or left it without making the other contact.
     side: Contact,
-    /// End of the bounce list of the contact that has made, microseconds.
+    /// End of the bounce of the present closure, microseconds.
     settled_us: f64,
     bounce: VecDeque<Change>,
-    /// Results that this relay has shown so far.
+    /// Results that this relay has shown so far: times, bounce, resistances.
     pub record: RelayRecord,
 }
 
 /// Longest interval over which the coil resistance counts as constant, microseconds.
 const STILL_US: f64 = 50_000.0;
-/// Time after which the bounce of a closure has ended, microseconds.
+/// Time that the bounce of a closure lasts at most, microseconds.
 const SETTLING_US: f64 = 8_000.0;
 /// Change of the supply, relative to nominal, that starts a new operation and ends the settling.
 const NEW_OPERATION: f64 = 0.1;
 
 impl Relay {
-    /// Creates a relay from its true values at an instant; `draw` is the random stream of its operations.
+    /// Creates a relay with the given true values at `t_us`; `draw` is the random stream of its operations.
     pub fn new(
         mut drawn: RelayValues,
         world: &WorldTable,
@@ -123,7 +123,7 @@ impl Relay {
         &self.drawn
     }
 
-    /// Returns the rig time that the motion has spent at each level of detail, held and moving.
+    /// Returns the rig time spent at each level of detail of the motion: held and moving.
     pub fn levels(&self) -> Levels {
         self.motion.levels()
     }
@@ -188,7 +188,7 @@ impl Relay {
         above_zero / (REFERENCE_C - self.copper_zero_c)
     }
 
-    /// Advances the temperature of the coil to `t_us`; the supply has been constant since the last call.
+    /// Advances the coil temperature to `t_us`; the supply must have been constant since the last call.
     fn settle(&mut self, t_us: f64) {
         let volts = self.supply.volts();
         let seconds = (t_us - self.since_us) * 1e-6;

@@ -1,23 +1,24 @@
-//! Motion of the armature: held on a stop in equilibrium, integrated while it moves.
+//! Motion of the armature: held in equilibrium on a stop, or integrated while it moves.
 //!
 //! The motion selects one of two levels of detail:
 //!
-//! - *held*: the armature is pressed on backstop or seat. Only the flux is integrated, travel and leaf follow it
-//!   in equilibrium; a constant flux costs nothing.
-//! - *moving*: all five states of [`super::lumped`] are integrated, from the instant at which the force on the
+//! - *held*: the armature presses on backstop or seat. The motion integrates only the flux; travel and leaf follow it
+//!   in equilibrium. A constant flux costs nothing.
+//! - *moving*: the motion integrates all five states of [`super::lumped`], from the instant at which the force on the
 //!   stop falls to [`LEAST_PUSH_N`] until the bounce has died out.
 //!
-//! A model without the leaf would be cheaper and 4 % off in time; between the stops the five states cost only
-//! about 4 us per rig millisecond.
+//! A model without the leaf would be cheaper and 4 % off in time; between the stops the five states cost only about 4
+//! us of processor time per rig millisecond.
 
 use serde::Serialize;
 
 use super::lumped::{Drive, Element, Event, LAMBDA, Model, Solver, State, V, W, X, Y};
 
-/// Relative tolerance of a step: instants to a nanosecond, while the counters resolve 20 us.
+/// Relative tolerance of a step: it locates instants to a nanosecond, while the counters resolve 20 us.
 const RTOL: f64 = 1e-6;
-/// Force on a stop below which the model integrates the motion of the armature, N; above it the armature rests. Half the
-/// force with which a relay without current rests on its stop, so that an armature about to leave is integrated.
+/// Force on a stop up to which the model integrates the motion of the armature, N; above it the armature rests. It is
+/// half the force with which a relay without current rests on its stop, so that the integration begins before the
+/// armature leaves.
 const LEAST_PUSH_N: f64 = 0.02;
 /// Speed above which the armature is not at rest, m/s; slower hops stay below 0.2 um.
 const CALM_M_PER_S: f64 = 4e-3;
@@ -30,7 +31,7 @@ const FLUX_STEP_S: f64 = 2.5e-4;
 /// Longest step of the flux as a fraction of its time constant. Behind a blocking suppression eddy currents alone
 /// carry the flux with a time constant down to 0.05 ms; a step of three of them diverges.
 const FLUX_STEP_SHARE: f64 = 0.25;
-/// Rate of the flux below which it counts as constant, V: a microvolt of the source.
+/// Rate of change of the flux below which it counts as constant, V: a microvolt of the source.
 const STILL_V: f64 = 1e-6;
 
 /// Rig time spent at each level of detail of the motion, s.
@@ -42,7 +43,7 @@ pub struct Levels {
     pub moving_s: f64,
 }
 
-/// State of a relay's motion, at one of the two levels of detail.
+/// Motion of a relay, at one of the two levels of detail.
 #[derive(Debug, Clone)]
 pub struct Motion {
     model: Model,
@@ -54,8 +55,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Creates the motion at `t_s`, without current, on the backstop, or on the seat where a weld holds the armature;
-    /// a `stuck` armature never moves.
+    /// Creates the motion at `t_s` without current, on the backstop, or with `seated` on the seat, where a weld holds
+    /// the armature; a `stuck` armature never moves.
     pub fn new(model: Model, t_s: f64, drive: Drive, stuck: bool, seated: bool) -> Self {
         let mut state = model.at_rest(0.0);
         if seated {
@@ -94,7 +95,7 @@ impl Motion {
         x < 0.02 * travel || x > 0.98 * travel
     }
 
-    /// Returns the coil current into a source of `volts`, or into the suppression, A.
+    /// Returns the coil current, A: from a source of `volts`, or into the suppression.
     pub fn current(&self, volts: f64) -> f64 {
         let rate = self.flux_rate(&self.solver.state);
         match self.drive {
@@ -149,8 +150,8 @@ impl Motion {
             .resting_flux_rate(self.solver.t_s, s, &self.drive)
     }
 
-    /// Integrates the flux alone, to `until_s` or until the armature is about to leave its stop; rejects a step
-    /// at whose end the force on the stop would vanish.
+    /// Integrates the flux alone, to `until_s` or until the armature is about to leave its stop; it does not take a
+    /// step at whose end the force on the stop would be too small.
     fn hold(&mut self, until_s: f64) {
         self.press(self.solver.state);
         while self.solver.t_s < until_s {
@@ -184,7 +185,7 @@ impl Motion {
         push
     }
 
-    /// Returns the mean rate of the flux over a step, by the classical Runge-Kutta method of order 4.
+    /// Returns the mean rate of change of the flux over a step, by the classical Runge-Kutta method of order 4.
     fn mean_rate(&self, s: &State, first: f64, h: f64) -> f64 {
         let at = |rate: f64, part: f64| {
             let mut s = *s;

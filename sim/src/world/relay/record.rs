@@ -17,7 +17,7 @@ struct Closures {
     count: u32,
 }
 
-/// Time and bounce of one switching of a contact.
+/// Operate or release time, and bounce, of the last switching of a contact.
 #[derive(Debug, Clone, Copy, Default)]
 struct Timing {
     start_us: Option<f64>,
@@ -47,7 +47,7 @@ impl RelayRecord {
         }
     }
 
-    /// Returns the resistance of the present closure, milliohm.
+    /// Returns the resistance of the present or last closure, milliohm.
     pub fn contact_mohm(&self, contact: Contact) -> f64 {
         self.closures[contact as usize].now_mohm
     }
@@ -68,7 +68,7 @@ impl RelayRecord {
         timing.time_ms.map(|_| timing.bounce_us / 1000.0)
     }
 
-    /// Returns the mean resistance over the closures with source current, milliohm.
+    /// Returns the mean resistance over the closures that carried source current, milliohm.
     pub fn mean_mohm(&self, contact: Contact) -> Option<f64> {
         let c = &self.closures[contact as usize];
         (c.count > 0).then(|| c.sum_mohm / f64::from(c.count))
@@ -91,7 +91,8 @@ impl RelayRecord {
         }
     }
 
-    /// Records a step of the supply; `still` means that the armature was at a stop.
+    /// Records a step of the supply; `still` means that the armature was at a stop, so that an operate or release time
+    /// may begin.
     pub(super) fn supply_step(&mut self, t_us: f64, old_v: f64, new_v: f64, still: bool) {
         let (full, none) = (FULL * self.nominal_v, NONE * self.nominal_v);
         if (new_v - old_v).abs() < 0.02 * self.nominal_v {
@@ -104,7 +105,7 @@ impl RelayRecord {
         nc.start_us = (still && old_v >= full && new_v <= none).then_some(t_us);
     }
 
-    /// Records the first make of a contact after the armature has crossed.
+    /// Records the first make of a contact after the armature has moved across from the other one.
     pub(super) fn make(&mut self, contact: Contact, t_us: f64) {
         let timing = &mut self.timing[contact as usize];
         timing.following = timing.start_us.is_some();

@@ -21,7 +21,7 @@ table!(
     }
 );
 table!(
-    /// Default relay that the fit adjusts, its heat stores, its bounce lists.
+    /// Default relay that the fit adjusts, its heat capacities, its bounce lists.
     RelayTable {
         lumped: Parameters,
         copper_zero_c: f64, coil_heat_j_per_k: f64, body_heat_j_per_k: f64,

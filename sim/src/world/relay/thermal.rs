@@ -1,8 +1,8 @@
-//! Coil heating: winding and body as two heat stores, in closed form for constant power.
+//! Coil heating: winding and body as two heat capacities, in closed form for constant power.
 
 use super::table::RelayTable;
 
-/// Two heat stores; temperatures in kelvin above the ambient.
+/// Two heat capacities; temperatures in kelvin above the ambient.
 #[derive(Debug, Clone)]
 pub struct Thermal {
     coil: f64,
@@ -13,7 +13,7 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// Creates both stores `above_k` above the ambient.
+    /// Creates both heat capacities `above_k` kelvin above the ambient.
     pub fn new(table: &RelayTable, above_k: f64) -> Self {
         let (to_body, to_air) = (
             1.0 / table.coil_to_body_k_per_w,

@@ -50,7 +50,7 @@ pub struct RelayValues {
     pub ohm_scale: f64,
     /// Turns of this coil per turn of the 12 V part.
     pub turns: f64,
-    /// Origin of its operate time and release time.
+    /// Origin of the operate time and release time of this relay.
     pub time_origin: TimeOrigin,
     /// Winding resistance, ohm; infinite when open.
     pub coil_ohm: f64,
@@ -62,13 +62,13 @@ pub struct RelayValues {
     pub operate_ms: f64,
     /// Time from drive off to first make of NC, from nominal voltage into the zener, ms.
     pub release_ms: f64,
-    /// Bounce of NO: microseconds closed, open, closed ...
+    /// Bounce pattern of NO, microseconds: closed, open, closed, and so on.
     pub bounce_no_us: Vec<f64>,
-    /// Bounce of NC, in the same form.
+    /// Bounce pattern of NC, in the same form.
     pub bounce_nc_us: Vec<f64>,
-    /// Resistance of the NO contact.
+    /// Resistance of the NO contact at its closures.
     pub film_no: ContactFilm,
-    /// Resistance of the NC contact.
+    /// Resistance of the NC contact at its closures.
     pub film_nc: ContactFilm,
     /// Temperature of the part minus that of the track, kelvin.
     pub offset_k: f64,
@@ -100,7 +100,7 @@ impl RelayValues {
         part
     }
 
-    /// Draws a reference part: certified values within their uncertainty, all other values typical.
+    /// Draws a reference part: certified values within their uncertainties, typical values for everything else.
     pub fn of_certificate(
         world: &WorldTable,
         scale: Scale,
@@ -224,7 +224,7 @@ impl RelayValues {
         self.ohm_scale * world.lot.nominal_coil_ohm
     }
 
-    /// Changes the winding at constant power: volts scale with the root of the ohms.
+    /// Changes the winding at constant power: volts scale with the square root of the ohms.
     fn change_winding(&mut self, factor: f64, world: &WorldTable) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
         self.turns *= factor.sqrt();
@@ -240,7 +240,7 @@ impl RelayValues {
         }
     }
 
-    /// Returns the results that a relay with these values shows; an open coil counts as intact.
+    /// Returns the results that a relay with these values must show; an open coil counts as intact.
     pub fn fit_target(&self, world: &WorldTable) -> FitTarget {
         let wound = self.nominal_ohm(world);
         FitTarget {

@@ -7,7 +7,7 @@ use crate::world::probes::Pins;
 use crate::world::specimen::Arrival;
 use crate::world::table::WorldTable;
 
-/// Least resistance of a dummy, ohm; the board divides by it.
+/// Least resistance of a dummy, ohm; the board divides by this resistance.
 const LEAST_OHM: f64 = 1e-3;
 
 /// Lot of dummies of the world file.

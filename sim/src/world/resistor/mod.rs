@@ -1,9 +1,9 @@
 //! A dummy of relay size that checks the fixture: one metal-film resistor of known value between the coil pins.
 //!
-//! The body has the shape of a relay, and the feeder handles it as one. All five pins are present and plain, so
-//! force and sense probe touch metal at every pin and the Kelvin test passes. Common, NO and NC are blind: no
-//! wire leads to them, so no contact ever closes. The current follows a supply at once. The resistor keeps the
-//! temperature that it had in the magazine, since it warms by few kelvin at 25 ppm each.
+//! The body has the shape of a relay, and the feeder handles it as one. All five pins are present and plain, so force
+//! and sense probe touch metal at every pin and the Kelvin test passes. Common, NO and NC are blind: no wire leads to
+//! them, so no contact ever closes. The current follows the supply at once. The resistor keeps the temperature that it
+//! had in the magazine: in reality it warms by a few kelvin, each of which changes the resistance by 25 ppm.
 
 mod lot;
 

@@ -12,7 +12,7 @@ pub enum Read {
     Board,
     /// One scan of the enabled channels of the coil converter.
     Coil,
-    /// One channel of the coil converter, in about half the time of a scan.
+    /// One channel of the coil converter; takes about half the time of a scan.
     Current(AnalogIn),
     /// The drop across the contact under test.
     Drop,
@@ -26,7 +26,7 @@ pub enum Read {
     Resets,
 }
 
-/// One step of a stage; waits and marks work as in [`act::Act`].
+/// One step of a stage; waits and marks work as those of [`act::Act`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Act {
     /// Sets outputs of the interface board in one write.
@@ -35,8 +35,8 @@ pub enum Act {
     Supply(Vec<(AnalogOut, Volt)>),
     /// Reads these inputs once.
     Read(Read),
-    /// Selects the range of the supply with this code; the board switches once the drive is off and all sources are at
-    /// zero.
+    /// Selects the range of the supply with this code; the board switches only once the drive is off and all sources
+    /// are at zero.
     SelectRange(u8),
     /// Reads the board until it is in the range with this code; if the wait ends first, the runner skips the acts after
     /// this one. A rig with one range reads the board once.
@@ -46,7 +46,8 @@ pub enum Act {
         /// Longest wait.
         within: Span,
     },
-    /// Enables these channels of the coil converter and no others; only before a lot.
+    /// Enables these channels of the coil converter and no others. This writes EEPROM, so only a calibration does it,
+    /// before a lot.
     CoilMask(Vec<AnalogIn>),
     /// Marks this instant.
     Mark,

@@ -15,7 +15,7 @@ use crate::gauge::{Deviation, Factor};
 use serde::{Deserialize, Serialize};
 use units::{Unit, Volt};
 
-/// Reading of an analog input as a straight line of the true terminal voltage.
+/// Reading of an analog input as a linear function of the true terminal voltage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct InputLine {
     /// Volts read per true volt.
@@ -31,7 +31,7 @@ impl InputLine {
     }
 }
 
-/// Coil voltage from one of the three supply outputs, as a straight line of the wanted voltage.
+/// Coil voltage from one of the three supply outputs, as a linear function of the wanted voltage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OutputLine {
     /// Volts at the coil per wanted volt.
@@ -47,7 +47,7 @@ impl OutputLine {
         offset_v: Factor { value: 0.0, u: 0.0 },
     };
 
-    /// Returns the voltage to command so that the coil gets `wanted`.
+    /// Returns the voltage to command so that `wanted` reaches the coil.
     pub fn command_for(&self, wanted: Volt) -> Volt {
         Volt((wanted.0 - self.offset_v.value) / self.gain.value)
     }
@@ -63,14 +63,15 @@ impl OutputLine {
 pub struct Overshoot {
     /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
     pub fine_v: Factor,
-    /// Mean certified threshold of those parts, volts. [`Overshoot::fine_v`] contains the gain error of the supply at
-    /// this voltage; for other thresholds, the gain adds uncertainty in proportion to the difference from it.
+    /// Mean certified threshold of the reference parts, volts. [`Overshoot::fine_v`] contains the gain error of the
+    /// supply at this voltage; for another threshold the gain adds uncertainty in proportion to its distance from this
+    /// voltage.
     #[serde(default)]
     pub at_v: f64,
-    /// Mean of coarse minus fine indication of those parts, volts.
+    /// Mean of coarse minus fine indication of the reference parts, volts.
     #[serde(default)]
     pub at_coarse_v: f64,
-    /// Model of coarse minus fine indication: places the fine ramp, and gives results where a recipe allows it.
+    /// Model of coarse minus fine indication. It places the fine ramp, and gives results where a recipe allows that.
     #[serde(default = "assumed_model")]
     pub coarse: OvershootModel,
     /// True when a coarse ramp alone may give results: enough parts of the lot have taught the model.
@@ -84,7 +85,8 @@ const FIRST_PARTS: u32 = 20;
 impl Overshoot {
     /// Takes over the model taught by all parts, or the model of the lot once it has learned from [`FIRST_PARTS`].
     ///
-    /// Reference parts lie too far apart for a straight line: their model places ramps but gives no results.
+    /// The thresholds of reference parts lie too far apart for a linear model: theirs places ramps but gives no
+    /// results.
     pub fn taught(self, by_all: OvershootModel, by_lot: OvershootModel) -> Self {
         let judges = by_lot.parts() >= FIRST_PARTS;
         let coarse = if judges { by_lot } else { by_all };
@@ -97,9 +99,10 @@ impl Overshoot {
 
     /// Returns the fine overshoot of this part beyond that of the reference parts, volts (1 sd).
     ///
-    /// A rising ramp waits for the armature at both rates, so the fine overshoot grows in proportion to the coarse one.
-    /// A falling ramp waits for the flux, which predicts no fine overshoot and only adds uncertainty. Without a coarse
-    /// ramp the overshoot of the reference parts counts as uncertainty.
+    /// On a rising ramp the armature causes the delay at both rates, so the fine overshoot grows in proportion to the
+    /// coarse one. On a falling ramp the decay of the flux causes it: the coarse overshoot then does not predict the
+    /// fine one and only adds uncertainty. Without a coarse ramp the overshoot of the reference parts counts as
+    /// uncertainty.
     pub fn own_v(&self, coarse_minus_fine_v: f64, direction: Direction) -> Factor {
         let further = self.fine_v.value * (coarse_minus_fine_v / self.at_coarse_v - 1.0);
         match direction {
@@ -132,7 +135,8 @@ pub struct Overshoots {
 /// Temperature of the parts, found on reference parts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Temperature {
-    /// Difference between the temperature of a part and the mean of the reference parts, both against the track, kelvin.
+    /// Difference between the temperature of a part and the mean of the reference parts, each relative to that of the
+    /// magazine track, kelvin.
     pub part_k: Deviation,
     /// Certified over found coil resistance at the reference temperature. It contains the error of the thermometer, of
     /// the reference resistor and the mean heating of the coil.
@@ -150,17 +154,17 @@ pub struct Calibration {
     pub simulated: bool,
     /// Nominal coil voltage of the reference parts; the overshoot is valid for this voltage only.
     pub nominal_v: f64,
-    /// Straight line of the converter inputs that read the coil.
+    /// Linear function of the converter inputs that read the coil.
     pub coil_input: InputLine,
     /// Ohms per unit of (voltage reading / current reading) on the fine channels.
     pub ohm_fine: Factor,
     /// [`Calibration::ohm_fine`] on the wide current channel, for coils beyond the range of the fine one.
     pub ohm_wide: Factor,
-    /// [`Calibration::ohm_fine`] on the high current channel; none on a rig without one.
+    /// [`Calibration::ohm_fine`] on the high current channel; `None` on a rig without one.
     #[serde(default)]
     pub ohm_high: Option<Factor>,
-    /// Factor of the supply range in which the calibration was made; the lines of outputs and coil voltage hold in no
-    /// other range.
+    /// Factor of the supply range in which the calibration was made; the lines of the outputs and of the coil voltage
+    /// are valid in no other range.
     #[serde(default = "only_range")]
     pub range_factor: f64,
     /// Milliohms per volt of contact drop at the terminal, where the drop is half the difference between both
@@ -184,8 +188,8 @@ pub struct Calibration {
     /// Temperature of the parts; `None` before the reference parts are measured.
     #[serde(default)]
     pub temperature: Option<Temperature>,
-    /// Resistance of the coil's two force contacts while the reference parts were measured, ohm; the overshoot
-    /// contains it. 0 when unknown.
+    /// Resistance of the coil's two force contacts while the reference parts were measured, ohm; 0 when unknown. The
+    /// overshoot contains its effect.
     #[serde(default)]
     pub probe_contact_ohm: f64,
     /// Accuracies promised in `rig.toml` that the calibration has disproved.
@@ -237,8 +241,8 @@ impl Calibration {
         }
     }
 
-    /// Returns ohms per unit of (voltage reading / current reading) for these channels, corrected by the reference parts
-    /// once they are measured.
+    /// Returns ohms per unit of (voltage reading / current reading) for these channels, corrected by the reference
+    /// parts once these are measured.
     pub fn ohm(&self, channels: CoilChannels) -> Factor {
         let by_resistor = match channels {
             CoilChannels::Fine => self.ohm_fine,
@@ -251,7 +255,8 @@ impl Calibration {
         })
     }
 
-    /// Returns every measured factor; the slope of the coarse ramp is the maker's and therefore absent.
+    /// Returns every measured factor. The slope of the coarse ramp is absent, because it is the maker's and not
+    /// measured.
     fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };
         let mut all = vec![

@@ -33,9 +33,9 @@ pub fn relative_per_kelvin(at: Celsius) -> f64 {
     1.0 / (COPPER_ZERO_C + at.0)
 }
 
-/// Returns the coil resistance from scans of (voltage, current) at the terminals, free of offset.
+/// Returns the coil resistance from scans of (voltage, current), both at the terminals and free of offset.
 ///
-/// `None` without a scan, or when the current is below the uncertainty of one reading.
+/// `None` without a scan, or when the mean current reading is below the uncertainty of one reading.
 pub fn resistance(
     scans: &[(Volt, Volt)],
     ohm_per_ratio: Factor,

@@ -45,10 +45,11 @@ impl Closure {
     }
 }
 
-/// Returns the standard uncertainty of the mean drop of `later + 1` closures.
+/// Returns the standard uncertainty of the mean drop of `later + 1` closures, volts.
 ///
-/// The first closure has `readings` readings of both polarities. The later ones are forward only; the first one's zero
-/// is subtracted from them, and the EMF may change by `emf_v`, so more closures do not average the noise of that zero.
+/// The first closure has `readings` readings of both polarities. The later ones have forward readings only: the zero of
+/// the first closure is subtracted from them, so averaging does not reduce the noise of that zero, and the EMF may have
+/// changed by `emf_v` since.
 pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64) -> f64 {
     let (m, k) = (readings as f64, later as f64);
     let n = k + 1.0;
@@ -58,7 +59,7 @@ pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64)
     (reading_v.powi(2) * (forward + reversed + own) + emf_v.powi(2) * own).sqrt()
 }
 
-/// Returns the resistance in milliohms from the drops of one or more closures, each free of offset and EMF.
+/// Returns the resistance in milliohms from the drops of closures, each free of offset and EMF; `None` without a drop.
 ///
 /// `mean_u_v` is the standard uncertainty of their mean at the terminal. The budget omits the scatter from closure to
 /// closure: the result is the mean of these closures.

@@ -32,8 +32,8 @@ pub struct Device {
     context: Context,
     certificates: Vec<ReferencePart>,
     reference_parts: ReferenceRun,
-    /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that
-    /// passes.
+    /// Models of the coarse overshoot, operate and release, learned from reference parts and from every good part of
+    /// the lot.
     coarse: (OvershootModel, OvershootModel),
     /// The same models, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
@@ -100,14 +100,14 @@ impl Device {
         }
     }
 
-    /// Watches the promised scatter of operations on the repeated ramps of any part.
+    /// Compares the scatter of repeated ramps, of any part, with the promised scatter of operations.
     fn watch(&mut self, record: &TestRecord) {
         let scale = self.context.scale();
         self.promises.watch_repeats(record, scale);
         self.promises.apply(&mut self.context);
     }
 
-    /// Watches the promises that only a good part of the lot can test: the scatter of closures and of overshoots.
+    /// Compares the scatter of closures with the promised one, which only a good part of the lot can test.
     fn watch_good(&mut self, record: &TestRecord) {
         self.promises.watch_closures(observed(record));
         self.promises.apply(&mut self.context);
@@ -149,7 +149,7 @@ impl Device {
         }
     }
 
-    /// Takes over the overshoot of the reference parts and, with it, the probe contact resistance that it contains.
+    /// Takes over the overshoot found on the reference parts, and the probe contact resistance that it contains.
     fn teach(&mut self, overshoots: Overshoots) {
         let probe_contact_ohm = self.reference_parts.probe_contact_ohm();
         self.calibrate(|calibration| calibration.probe_contact_ohm = probe_contact_ohm);
@@ -271,7 +271,7 @@ impl DeviceUnderTest for Device {
         Ok(dut::Calibration::EmRelay(calibration))
     }
 
-    /// Only parts that `pass` teach the overshoot models; every part adds to the trend of the probe contact.
+    /// Teaches the overshoot models with parts that `pass`, and the trend of the probe contact with every part.
     fn learn(&mut self, record: &TestRecord, pass: bool) {
         let observed = observed(record);
         self.watch(record);
@@ -304,8 +304,9 @@ impl DeviceUnderTest for Device {
         self.promises.announce()
     }
 
-    /// Returns the mean contact resistance of the probes less the expanded uncertainty (k = 2) from the gain of the
-    /// supply level: on a coil of thousands of ohms, one ohm of contact is smaller than the error of the level.
+    /// Returns the mean contact resistance of the probes less its expanded uncertainty (k = 2), which comes from the
+    /// gain of the level output: on a coil of thousands of ohms, one ohm of contact resistance is smaller than the
+    /// error of that output.
     fn settled_probe_contact(&self) -> Option<Ohm> {
         let Ohm(mean) = self.probe_contact.settled()?;
         let level = self.context.calibration.level.gain;

@@ -1,5 +1,5 @@
-//! Lower bounds that stored curves prove for a parameter without a value: while the contact has not moved, threshold
-//! or time exceed what the curve shows.
+//! Lower bounds that stored curves prove for a parameter without a value: as long as the contact has not moved, the
+//! threshold or time exceeds what the curve shows.
 //!
 //! | parameter | is at least |
 //! |---|---|
@@ -14,13 +14,13 @@ use super::Parameter;
 use super::points::{AnalogOut, BOARD, DigitalOut};
 use crate::instrument::curve::Curve;
 
-/// Margin as a share of the bound: copper 5 K from the reference temperature (2 %), tolerance of the supply, and one
-/// poll of the board.
+/// Margin as a share of the bound. It covers a copper temperature 5 K from the reference (2 %), the tolerance of the
+/// supply, and one poll of the board.
 pub const DOUBT: f64 = 0.03;
-/// Share of the nominal voltage from which the coil counts as driven at nominal.
+/// Supply command, as a share of the nominal voltage, from which the coil counts as driven at nominal.
 const NOMINAL: f64 = 0.98;
 
-/// Returns the lower bound of `parameter` in its unit, for a coil of `nominal_v`; none when the curves prove nothing.
+/// Returns the lower bound of `parameter` in its unit, for a coil of `nominal_v`; `None` when the curves prove nothing.
 pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
     let proven = Bounds::of(curves, nominal_v);
     let ms = |us: i64| us as f64 / 1e3;

@@ -1,7 +1,7 @@
 //! Checks, before any motion, that the modules of a rig can perform a recipe, and that its limits are wider than the
 //! guard bands.
 //!
-//! A strategy needs outputs that step or slew, a counter in counting mode and enabled channels.
+//! A strategy may need outputs that step or slew, a counter in counting mode, or channels that are enabled.
 
 mod limits;
 mod supply;
@@ -30,7 +30,7 @@ pub const SLOWEST_REFRESH_MS: f64 = 2.0;
 const FEWEST_PARTS: usize = 3;
 /// Conversions per second of an I-7017F outside its fast mode.
 const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
-/// Type code of an I-7080 in counting mode; 51 is frequency mode.
+/// Type code of an I-7080 in counting mode; 0x51 would be frequency mode.
 const COUNTS: u8 = 0x50;
 
 /// Returns every reason why the rig cannot perform the recipe, each with its key: missing references, bins or points
@@ -47,7 +47,7 @@ pub fn faults(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
     faults
 }
 
-/// The part of the rig that a recipe uses: its wiring in the supply range that serves the recipe, and its points.
+/// What a recipe uses of the rig: the wiring in the supply range that serves the recipe, and the points.
 struct Reach {
     wiring: Wiring,
     points: Points,
@@ -84,8 +84,8 @@ fn out_of_reach(
     faults
 }
 
-/// Checks that a recipe which ends closures early (once the result is clear of its limits) limits both contact
-/// resistances.
+/// Checks that both contact resistances have limits if the recipe stops repeating closures once a result is clear of
+/// its limits.
 fn check_early_stop(recipe: &RelayRecipe, limits: &Limits) -> Result<(), Fault> {
     if recipe.test.strategy.contact.stops_early {
         for parameter in [
@@ -105,7 +105,7 @@ fn check_early_stop(recipe: &RelayRecipe, limits: &Limits) -> Result<(), Fault> 
     Ok(())
 }
 
-/// Returns a fault for each pair of limits that lie so close together that the guard bands leave nothing between them.
+/// Returns a fault for each pair of limits so close together that the guard bands leave no room between them.
 fn guard_band_faults(
     recipe: &RelayRecipe,
     limits: &Limits,
@@ -229,7 +229,8 @@ pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOutput) -> f64 {
     slew.and_then(|code| code.volt_per_second()).unwrap_or(0.0) * terminal.gain
 }
 
-/// Returns the expanded uncertainty of a parameter from the makers' accuracies: the terms that every strategy has.
+/// Returns the expanded uncertainty of a parameter from the makers' accuracies, with only those terms that every
+/// strategy has.
 fn expected_u(parameter: Parameter, recipe: &RelayRecipe, accuracy: &AccuracySettings) -> f64 {
     let per_kelvin = relative_per_kelvin(Celsius(recipe.part.reference_temperature_c));
     let scale = Scale::new(recipe.part.nominal_v, 1.0);

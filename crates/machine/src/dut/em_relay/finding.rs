@@ -40,7 +40,7 @@ pub enum Finding {
     ContactOverRange(Contact),
     /// The drop of a contact is over range, and the source cannot drive its current (compliance).
     ContactOpen(Contact),
-    /// COM alone has no Kelvin contact: a misoriented part or a dirty COM probe.
+    /// COM alone has no Kelvin contact: the part is misoriented, or the COM probe is dirty.
     Misoriented,
     /// One pin has no Kelvin contact; detail: its name.
     PinOpen,
@@ -72,7 +72,7 @@ pub enum Finding {
     GatesNotRead,
     /// Counts outside the range of any relay; detail: both counts.
     GatesImplausible,
-    /// NO is closed after a coarse ramp without an event in its window.
+    /// NO is closed after a coarse ramp, although the board detected no make while its window was open.
     MadeOutsideWindow,
     /// Every fine ramp missed the event; detail: number of ramps.
     ThresholdNotFound(Direction),

@@ -6,12 +6,12 @@
 //! overshoot also depends on springs and travel, which the operate ramp shows. The model is therefore linear in the
 //! logarithms of five results ([`CoarseResults`]), each relative to that of the first part.
 //!
-//! Reference parts and the first parts of a lot teach the line: they have both ramps. It is a regression with a
-//! conjugate prior (normal with inverse gamma), so it gives an uncertainty from the first part on; a result that has
-//! varied little widens it. The weight of the prior falls with every part.
+//! Reference parts and the first parts of a lot have both ramps and teach the model. It is a regression with a
+//! conjugate prior (normal with inverse gamma), so it states an uncertainty from the first part on. A result that has
+//! varied little among the parts widens that uncertainty. The weight of the prior falls with every part.
 //!
-//! The line is valid only among the parts that taught it. For a part far outside, it may still place the ramp but gives
-//! no result ([`Predicted::alike`]); the uncertainty grows with the square of the distance.
+//! The model is valid only for parts like those that taught it. For a part far outside, it may still place the ramp but
+//! gives no result ([`Predicted::alike`]); the uncertainty grows with the square of the distance.
 
 use serde::{Deserialize, Serialize};
 use units::Volt;
@@ -30,8 +30,8 @@ const GUESS_SD_V: f64 = 0.05;
 const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
 const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
-/// Largest residual that counts, in standard uncertainties; a larger one counts as this. So one outlier does not bend
-/// the line, whereas residuals that persist widen the uncertainty until the line bends.
+/// Largest residual that the model learns from, in standard uncertainties; it clips a larger one to this. One outlier
+/// thus does not bend the line, whereas residuals that persist widen the uncertainty until the line bends.
 const OUTLIER: f64 = 3.0;
 /// Greatest squared distance of a similar part from the parts learned, in squared standard deviations: one in two
 /// thousand lies further away. `WIDER` raises it after few parts (Hotelling's T2 of five variates, accurate to a tenth
@@ -39,7 +39,7 @@ const OUTLIER: f64 = 3.0;
 const MAX_DISTANCE2: f64 = 20.0;
 const WIDER: f64 = 20.0;
 const RESULTS: usize = 5;
-/// Number of coefficients: a constant, and a slope for each result.
+/// Number of coefficients of the line: a constant, and a slope for each result.
 const TERMS: usize = RESULTS + 1;
 
 /// Results of a part that are known at the contact event of its coarse ramp; NaN for a missing result.
@@ -81,14 +81,14 @@ impl CoarseResults {
     }
 }
 
-/// Expected overshoot of a part.
+/// Expected overshoot of a part, from the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
     /// Coarse minus fine indication, volts.
     pub volts: f64,
     /// Standard uncertainty, volts.
     pub u_v: f64,
-    /// Variance of the line at this part, as a multiple of the scatter about the line.
+    /// Variance of the line at this part, as a multiple of the residual variance about the line.
     pub spread: f64,
     /// True when the part lies among those that taught the model.
     pub alike: bool,
@@ -162,8 +162,8 @@ impl OvershootModel {
         self.parts += 1;
     }
 
-    /// Returns the expected overshoot of a part. For a part with a missing result this is the overshoot of the first
-    /// part, and `alike` is false.
+    /// Returns the expected overshoot of a part. For a part with a missing result, returns that of the first part, with
+    /// `alike` false.
     pub fn of(&self, shown: &CoarseResults) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
@@ -193,8 +193,8 @@ impl OvershootModel {
         (0..TERMS).map(of_term).sum()
     }
 
-    /// Returns the squared distance from the parts learned, relative to the limit for similar parts; `None` after too
-    /// few parts.
+    /// Returns the squared distance from the parts learned, as a multiple of the limit for similar parts; `None` after
+    /// too few parts.
     fn beyond(&self, spread: f64) -> Option<f64> {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;

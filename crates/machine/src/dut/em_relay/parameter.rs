@@ -17,9 +17,9 @@ use units::{Celsius, Unit};
 pub enum Parameter {
     /// DC coil resistance at the recipe's reference temperature.
     CoilResistance,
-    /// Quasi-static must-operate threshold at the reference temperature.
+    /// Quasi-static operate (pick-up) voltage at the reference temperature.
     OperateVoltage,
-    /// Quasi-static must-release threshold at the reference temperature.
+    /// Quasi-static release (drop-out) voltage at the reference temperature.
     ReleaseVoltage,
     /// Time from switching nominal voltage onto the coil to the first make of NO, bounce excluded.
     OperateTime,
@@ -78,8 +78,8 @@ pub struct Facts {
     pub stage: Stage,
     /// Expected distribution over a lot.
     pub expected: Expected,
-    /// Greatest acceptable rms error over a lot: for resistances in ohm in percent, for voltages in percent of the
-    /// nominal coil voltage, for the others in the unit of the key.
+    /// Greatest acceptable rms error over a lot: in percent of the value for a resistance in ohm, in percent of the
+    /// nominal coil voltage for a voltage, else in the unit of the key.
     pub allowed_rms: f64,
 }
 
@@ -98,7 +98,7 @@ pub enum Expected {
         sd: f64,
         /// True when the logarithm is normally distributed.
         logarithmic: bool,
-        /// Standard uncertainty that remains with every strategy.
+        /// Standard uncertainty that every strategy has at least.
         u: f64,
     },
 }

@@ -97,7 +97,8 @@ pub const BOARD_BITS: &str = "supply range 1 0 where the rig has ranges, \
 /// Thermometer of the magazine track, taken as that of the part.
 const TRACK: &str = "track_temperature";
 
-/// Inputs of the board that one reading samples together, from bit 0 on; those that read the range back follow.
+/// Inputs of the board that one reading samples together, from bit 0 on; the inputs that read the range back follow
+/// them.
 const BOARD_INPUTS: [DigitalIn; 9] = [
     DigitalIn::NoClosed,
     DigitalIn::NcClosed,
@@ -145,7 +146,7 @@ const QUANTITIES: [Quantity; 9] = [
     quantity("coil_current_fine", "A", 1e-8),
     quantity("coil_current_high", "A", 1e-7),
     quantity("reference_voltage", "V", 1e-5),
-    // Every test reads the track temperature, and no act sets the channel mask of its module.
+    // Every test reads the contact drop, and no act sets the channel mask of its module.
     Quantity {
         enabled: true,
         ..quantity("contact_drop", "V", 1e-7)
@@ -197,7 +198,7 @@ pub struct Points {
     pub track: Thermometer,
     /// Inputs of the board that one reading samples together.
     pub board: Arc<Word>,
-    /// Points that select the range of the supply; none on a rig with one range.
+    /// Points that select the range of the supply; `None` on a rig with one range.
     pub range: Option<RangeSelector>,
 }
 
@@ -264,12 +265,12 @@ impl Points {
         input
     }
 
-    /// Returns an analog input; none where the rig lacks it.
+    /// Returns an analog input; `None` where the rig lacks it.
     pub fn wired_analog(&self, point: AnalogIn) -> Option<AnalogInput> {
         self.analog[point.index()].map(|(input, _)| input)
     }
 
-    /// Returns the gain of an analog input, volts at the terminal per unit; none where the rig lacks it.
+    /// Returns the gain of an analog input, volts at the terminal per unit; `None` where the rig lacks it.
     pub fn gain(&self, point: AnalogIn) -> Option<f64> {
         self.analog[point.index()].map(|(_, gain)| gain)
     }

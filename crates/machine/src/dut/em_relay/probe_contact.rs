@@ -1,9 +1,9 @@
 //! Contact resistance of the probes at the coil pins, from the voltage drop between supply and pins.
 //!
 //! The sense wires keep this resistance out of the coil resistance, but thresholds are volts of the supply: each ohm in
-//! series raises them in proportion, by 20 mV on 8 V at 400 ohm. Its change since the measurement of the reference
-//! parts is an uncertainty of a threshold and no correction, since the pins of a part may differ from those before it.
-//! The Kelvin bits open only at 5 ohm per pin.
+//! series raises them in proportion, by 20 mV on 8 V at 400 ohm. A test treats the change of this resistance since the
+//! reference parts were measured as an uncertainty of a threshold and corrects nothing, since the pins of a part may
+//! differ from those before it. The Kelvin bits open only at 5 ohm per pin.
 //!
 //! The supply is calibrated on the reference resistor, without probes. The difference between command and pin voltage,
 //! divided by the current, is the resistance of both force contacts in series.
@@ -24,7 +24,7 @@ pub fn in_series(command: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
 }
 
 /// Mean over the parts of a run, weighted towards the latest: sixteen parts later, the weight of a part has fallen to
-/// 0.37 of its first value.
+/// 0.36 of its first value.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Trend {
     mean: Option<f64>,

@@ -18,12 +18,12 @@ pub struct BoardInputs {
     pub compliance: bool,
     /// True when the hard-wired chain reports the probes up.
     pub probe_chain: bool,
-    /// Code of the supply range; none on a rig with one range.
+    /// Code of the supply range; `None` on a rig with one range.
     pub range: Option<u8>,
 }
 
-/// One scan of the coil converter, `None` for a channel outside the scan; the current ranges below hold for the shipped
-/// rig.
+/// One scan of the coil converter; `None` for a channel outside the scan. The stated current ranges are those of the
+/// shipped rig.
 #[derive(Debug, Clone)]
 pub struct CoilScan {
     /// Coil voltage.
@@ -53,7 +53,7 @@ pub struct Readings {
     pub drops: Vec<Sample>,
     /// Gate counters 0 and 1.
     pub gates: Vec<[CountSample; 2]>,
-    /// For each awaited input, true when it came in time.
+    /// For each awaited input, true when it became active in time.
     pub seen: Vec<bool>,
     /// Track temperatures.
     pub track: Vec<Sample>,
@@ -81,7 +81,7 @@ impl Readings {
     }
 }
 
-/// Yields the samples of an analog input; none where the rig lacks it.
+/// Yields the samples of an analog input; yields nothing where the rig lacks the input.
 fn analog<'a>(
     read: &'a ByPoint,
     points: &Points,

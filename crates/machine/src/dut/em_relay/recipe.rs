@@ -1,4 +1,4 @@
-//! Relay part of a recipe: the device, and how to measure it.
+//! Sections of a recipe for a relay: the device, and how to measure it.
 
 use super::parameter::Parameter;
 use super::points::AnalogIn;
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use units::Celsius;
 
-/// Highest voltage that the coil of a relay of this class bears, as a multiple of the nominal voltage.
+/// Highest voltage that the coil of a relay of this class withstands, as a multiple of the nominal voltage.
 const HIGHEST_RAMP: f64 = 1.3;
 
 /// The sections `[part]` and `[test]`.
@@ -73,7 +73,7 @@ impl KindRecipe for RelayRecipe {
     }
 
     /// Checks that pre-bias and expected thresholds are in ascending order below the nominal voltage, and that the
-    /// coarse ramp ends at a voltage that the coil bears.
+    /// coarse ramp ends at a voltage that the coil withstands.
     ///
     /// # Errors
     /// Fails with the first key that breaks this order or bound.
@@ -199,7 +199,7 @@ pub struct TestPlan {
     /// Coil suppression during the timed release.
     #[serde(rename = "clamp")]
     pub suppression: Suppression,
-    /// How the station searches each threshold, and how it samples coil and contacts.
+    /// How the test searches each threshold, and how it samples coil and contacts.
     #[serde(default)]
     pub strategy: Strategies,
 }

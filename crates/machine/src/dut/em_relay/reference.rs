@@ -1,9 +1,9 @@
 //! Calibration against the references on the interface board: 5.000 V, 400 ohm, 50 mOhm, 1.000 ms.
 //!
-//! The calibration runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the
-//! straight line of the coil converter's inputs, ohms per ratio on each current channel, milliohms per volt of drop,
-//! gate delays, gain and offset of the three supply outputs, and the slope of the fine ramp against the host's clock.
-//! The slope of the coarse ramp stays nominal: this ramp only places the fine one.
+//! The calibration runs with an empty nest and the probes up (drive and source need the probe-up chain). It finds gain
+//! and offset of the coil converter's inputs, ohms per ratio on each current channel, milliohms per volt of drop, gate
+//! delays, gain and offset of the three supply outputs, and the slope of the fine ramp against the host's clock. The
+//! slope of the coarse ramp stays nominal, because this ramp only places the fine one.
 
 mod check;
 mod fault;
@@ -41,7 +41,7 @@ use crate::rig::sample::{Quality, Sample};
 use crate::rig::wiring::Wiring;
 use units::{Span, Volt};
 
-/// Channels of the coil converter, of which a rig may lack the last two.
+/// Channels of the coil converter; a rig may lack the last two.
 const SCANNED: [AnalogIn; 6] = [
     AnalogIn::CoilVoltageFine,
     AnalogIn::CoilCurrentFine,
@@ -50,7 +50,7 @@ const SCANNED: [AnalogIn; 6] = [
     AnalogIn::SupplyVoltage,
     AnalogIn::CoilCurrentHigh,
 ];
-/// Scans per level: their mean lowers the uncertainty of 2.8 mV of one reading to 0.8 mV.
+/// Number of scans per level: their mean lowers the uncertainty of one reading, 2.8 mV, to 0.8 mV.
 const SCANS: usize = 12;
 /// Number of scans along the fine ramp.
 const RAMP_SCANS: usize = 56;
@@ -65,7 +65,7 @@ const DROPS: usize = 8;
 /// Number of gate pulses: their sum is uncertain by one count, their mean by 1/25 of a count.
 const PULSES: u32 = 25;
 
-/// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the relay test.
+/// Returns the inputs that [`acts`] scans; empty on a rig that lacks a point of the relay test.
 pub fn inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     let points = Points::resolve(wiring).ok();
     let inputs = points.map(|points| {
@@ -203,7 +203,7 @@ fn pulses(acts: &mut Vec<Act>) {
         Act::Wait(Span::ms(2)),
         Act::Board(vec![(Arm, false)]),
     ];
-    // The first pulse closes a window that an earlier test may have left open.
+    // The first pulse only closes a window that an earlier test may have left open.
     acts.extend(pulse.clone());
     acts.push(Act::Read(Read::Gates));
     for _ in 0..PULSES {
@@ -295,7 +295,7 @@ pub fn conclude(
     })
 }
 
-/// Computes the straight line of the coil converter's inputs from the reference voltage and the scans without drive.
+/// Computes gain and offset of the coil converter's inputs from the reference voltage and the scans without drive.
 fn coil_input(
     context: &Context,
     zero: Level,

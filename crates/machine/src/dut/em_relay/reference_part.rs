@@ -21,7 +21,8 @@ use texts::{Lang, Message};
 use thiserror::Error;
 use units::{Celsius, Ohm, Unit, Volt};
 
-/// Greatest difference of a reference part's overshoot from the mean, for a 12 V coil; a part beyond it is an outlier.
+/// Greatest difference of a reference part's overshoot from the mean, for a 12 V coil; a part beyond this is an
+/// outlier.
 const BAND: Volt = Volt(0.060);
 
 /// Reason why a reference part does not calibrate the rig, or disagrees with its certificate.
@@ -216,7 +217,8 @@ impl ReferenceRun {
         self.contact.mean().map_or(0.0, |Ohm(ohm)| ohm)
     }
 
-    /// Returns the mean of fine indication minus certificate over the parts so far, volts, for operate and release.
+    /// Returns the mean of fine indication minus certificate over the parts so far, volts, for operate and release;
+    /// `None` before the first part.
     pub fn fine_v(&self) -> Option<(f64, f64)> {
         let mean = |direction| self.mean(direction);
         (!self.shifts.is_empty()).then(|| (mean(Direction::Rising), mean(Direction::Falling)))
@@ -228,7 +230,7 @@ impl ReferenceRun {
         each.sum::<f64>() / self.shifts.len() as f64
     }
 
-    /// Returns the mean of coarse minus fine indication over the parts that have both, volts; 0 when none has.
+    /// Returns the mean of coarse minus fine indication over the parts that have both, volts; 0 when no part has both.
     fn over(&self, direction: Direction) -> f64 {
         let both = || {
             let each = self
@@ -297,7 +299,7 @@ fn coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<Factor, Misfi
     Ok(Factor::new(certified.value / coil.value, u))
 }
 
-/// Greatest difference of a result from the certificate, in standard deviations: with three results per part, one good
+/// Greatest difference of a result from the certificate, in standard deviations. With three results per part, one good
 /// part in 120 exceeds it.
 const CHECK_K: f64 = 3.0;
 
@@ -324,7 +326,8 @@ pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misf
     Ok(())
 }
 
-/// Returns the overshoot before the reference parts are complete: it places ramps, and its uncertainty is infinite.
+/// Returns the overshoot to use before the reference parts are complete. It only places ramps: its uncertainty is
+/// infinite.
 pub fn interim(coarse: OvershootModel, fine_v: f64) -> Overshoot {
     Overshoot {
         fine_v: Factor::new(fine_v, f64::INFINITY),

@@ -12,8 +12,8 @@ use crate::gauge::Limit;
 use serde::{Deserialize, Serialize};
 use units::Unit;
 
-/// Distance of a mean from its limit at which no more closures follow, in standard deviations: it decides 0.13 % of
-/// the parts at the limit wrongly.
+/// Distance of a mean from its limit beyond which the test adds no closure, in standard deviations. With it, 0.13 % of
+/// the parts that lie at the limit are judged wrongly.
 const CLEAR: f64 = 3.0;
 
 /// Directions of the source on one closure.
@@ -48,7 +48,7 @@ pub struct ContactSampling {
     pub polarities: Polarities,
     /// Greatest number of timed closures of either contact; NC has the closure at rest in addition.
     pub closures: u32,
-    /// True to end the closures once both means are clear of their limits.
+    /// True to stop repeating closures once both means are clear of their limits.
     pub stops_early: bool,
     /// Smallest expected scatter of a film from closure to closure, percent of the resistance (1 sd).
     pub closure_scatter_pct: u32,
@@ -92,8 +92,8 @@ pub struct CoilSampling {
 }
 
 impl Default for CoilSampling {
-    /// The default wait is 32 ms: the current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but the
-    /// pre-bias lifts the armature from its stop, and its swing moves the current by up to 0.4 % until it dies out.
+    /// The default wait is 32 ms. The current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but the
+    /// pre-bias lifts the armature from its stop, and the swing moves the current by up to 0.4 % until it dies out.
     fn default() -> Self {
         Self {
             settles_ms: 32,

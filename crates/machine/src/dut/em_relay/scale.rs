@@ -31,8 +31,8 @@ impl Scale {
         of_12_v * self.coil
     }
 
-    /// Returns the scatter of a threshold of this coil from operation to operation, volts (1 sd): proportional to the
-    /// nominal voltage, because an armature responds to current.
+    /// Returns the scatter of a threshold of this coil from operation to operation, volts (1 sd). It is proportional to
+    /// the nominal voltage, because an armature responds to current.
     pub fn operation_v(self, accuracy: &AccuracySettings) -> f64 {
         self.of_coil(Volt(accuracy.operation_scatter_mv / 1e3)).0
     }

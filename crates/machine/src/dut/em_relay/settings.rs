@@ -20,7 +20,7 @@ pub struct ReferenceSettings {
     pub voltage_v: f64,
     /// Tolerance of `voltage_v`, %.
     pub voltage_tolerance_pct: f64,
-    /// Gate pulse that ARM triggers on the contact reference, ms.
+    /// Length of the gate pulse that ARM triggers on the contact reference, ms.
     pub gate_pulse_ms: f64,
     /// Clock of the gated counters, Hz.
     pub counter_clock_hz: f64,
@@ -31,7 +31,7 @@ pub struct ReferenceSettings {
 /// Validity and source of a calibration.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct CalibrationSettings {
-    /// Age beyond which the rig refuses a lot, hours.
+    /// Age of a calibration beyond which the rig refuses to begin a lot with it, hours.
     pub valid_h: f64,
     /// File of the reference parts, next to `rig.toml`; `None` when no recipe needs them.
     #[serde(rename = "golden")]

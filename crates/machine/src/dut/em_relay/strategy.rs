@@ -63,7 +63,7 @@ impl Strategy {
         Self::NAMES[Self::ALL.iter().position(|it| *it == self).unwrap_or(0)]
     }
 
-    /// Returns true when the strategy begins with the coarse ramp; the others search by steps.
+    /// Returns true when the strategy begins with the coarse ramp; the others search by levels.
     pub fn ramps(self) -> bool {
         match self {
             Self::Pulse | Self::Staircase | Self::Bisection => false,
@@ -79,7 +79,7 @@ impl Strategy {
         }
     }
 
-    /// Returns true when the coarse value is a result.
+    /// Returns true when the value of the coarse ramp may be the result.
     pub fn trusts_coarse(self) -> bool {
         match self {
             Self::Ramp | Self::Adaptive => true,
@@ -91,9 +91,7 @@ impl Strategy {
 }
 
 /// Returns the threshold from two rising ramps (or, with both signs reversed, two falling ones) by the law `seen = V +
-/// r (a - L ln r)`: `rates` in volts per second, `growth_s` is L in seconds.
-///
-/// The two equations eliminate `a`.
+/// r (a - L ln r)`, from which it eliminates `a`. `rates` are in volts per second, `growth_s` is L in seconds.
 pub fn from_two_rates(seen_v: [f64; 2], rates: [f64; 2], growth_s: f64) -> f64 {
     let straight = |seen: f64, rate: f64| seen + rate * growth_s * rate.ln();
     let (one, two) = (straight(seen_v[0], rates[0]), straight(seen_v[1], rates[1]));

@@ -58,7 +58,7 @@ impl Supply {
         self.fine_at
     }
 
-    /// Returns true once both ramps are commanded to their lowest voltage.
+    /// Returns true when the last commands take both ramps to their lowest voltage.
     pub fn ramps_are_down(&self) -> bool {
         let rests = |line: OutputLine, at: Volt| {
             let lowest = line.delivers(Volt(0.0)).0.max(0.0);
@@ -67,7 +67,8 @@ impl Supply {
         rests(self.coarse, self.coarse_at) && rests(self.fine, self.fine_at)
     }
 
-    /// Returns the act that steps the level so that the sum becomes `total`; the ramps stay.
+    /// Returns the act that steps the level so that the sum becomes `total`; the ramp outputs keep their voltage. If
+    /// these alone exceed `total`, the level becomes 0.
     pub fn step_to(&mut self, total: Volt) -> Act {
         let wanted = total - self.coarse_at - self.fine_at;
         let command = Volt(self.level.command_for(wanted).0.max(0.0));

@@ -1,10 +1,10 @@
 //! Operate and release voltage from a ramp and a gated counter.
 //!
-//! The window opens when the supply has moved [`WINDOW`] from its level at ARM, and the latch closes it at the contact
-//! event, so the indicated voltage is `start +- (WINDOW + slope x gate)`. A ramp overshoots the quasi-static threshold.
-//! Reference parts give the overshoot of the fine ramp; it also contains the tolerance of [`WINDOW`], the error of the
-//! level, the contact of the probes and the mean heating of the coil. The operate current does not depend on
-//! temperature, so the voltage scales like the coil (IEC 61810-7).
+//! The window opens when the supply has moved [`WINDOW`] from its level at the rising edge of ARM (output `arm`), and
+//! the latch closes it at the contact event, so the indicated voltage is `start +- (WINDOW + slope x gate)`. A ramp
+//! overshoots the quasi-static threshold. Reference parts give the overshoot of the fine ramp; it also contains the
+//! tolerance of [`WINDOW`], the error of the level, the contact of the probes and the mean heating of the coil. The
+//! operate current does not depend on temperature, so the voltage scales like the coil resistance (IEC 61810-7).
 
 use super::calibration::Overshoot;
 use super::coil::{relative_per_kelvin, to_reference};
@@ -44,7 +44,7 @@ pub fn indicated(
     start + (window + Volt(slope_v_per_s * gate.0)) * direction.sign()
 }
 
-/// Uncertainty terms of a threshold in addition to that of the overshoot found on reference parts.
+/// Uncertainty terms of a threshold, except that of the overshoot found on reference parts.
 #[derive(Debug, Clone, Copy)]
 pub struct RampUncertainty {
     /// Slope of the fine ramp, volts per second.

@@ -23,7 +23,7 @@ pub fn counts(before: u32, after: u32) -> u32 {
     after.wrapping_sub(before)
 }
 
-/// Returns the root mean square error of a count with uniform phase and uniform length: `1 / (sqrt(6) f)`.
+/// Returns the rms error of a count with uniform phase and uniform length, in milliseconds: `1 / (sqrt(6) f)`.
 fn count_u_ms(clock: Clock) -> f64 {
     1e3 / (clock.hz * 6f64.sqrt())
 }
@@ -42,9 +42,9 @@ pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
     }
 }
 
-/// Returns the total open time of the bounces in milliseconds from both gates.
+/// Returns the total open time of the bounces in milliseconds, from both gates.
 ///
-/// Both counts are floors of lengths on one clock, so each brings its own count error.
+/// Each count is the floor of a length on the same clock, so each has its own count error.
 pub fn bounce_ms(gate0: u32, gate1: u32, delay_us: [Factor; 2], clock: Clock) -> Reading {
     let open_ms = (f64::from(gate1) - f64::from(gate0)) / clock.hz * 1e3;
     let value = (open_ms - (delay_us[1].value - delay_us[0].value) / 1e3).max(0.0);

@@ -41,7 +41,7 @@ impl Finding {
         }
     }
 
-    /// Returns the reason with `detail`, the names that its text contains.
+    /// Returns the reason with `detail`, which completes its text with names.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
             detail: detail.into(),

@@ -8,11 +8,12 @@ use crate::gauge::Budget;
 /// Resistance for a recipe without any limit, ohm.
 const USUAL_OHM: f64 = 390.0;
 
-/// Distance of the mean from the limit when a recipe has only one, as a share of the limit: five standard deviations.
+/// Distance of the mean from the limit in a recipe with only one limit, as a share of this limit: five standard
+/// deviations.
 const INSIDE: f64 = 0.05;
 
-/// Returns the scatter of the resistance: around the middle of the limits, with a tenth of their distance as standard
-/// deviation; with only one limit, around a value inside it.
+/// Returns the scatter of the resistance. With two limits the mean is their middle, and the standard deviation a tenth
+/// of their distance; with one limit, the mean lies inside it.
 pub fn made_up(limits: &Limits) -> MadeUp {
     let limit = limits.of(Parameter::Resistance);
     let (mean, sd) = match (limit.low, limit.high) {

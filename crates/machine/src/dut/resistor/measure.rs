@@ -1,4 +1,4 @@
-//! The test of a resistor: drive on at a level, one channel read, drive off.
+//! The test of a resistor: switches the drive on at a fixed level, reads one channel, switches the drive off.
 //!
 //! R = V / I. V is the commanded level, I the reading of the fine channel; both have the makers' accuracies. R contains
 //! the probe contacts, and its budget has a term for them. A result inside the guard band is repeated `slow_repeats`
@@ -36,7 +36,7 @@ pub struct Device {
     channel: ChannelAccuracy,
     /// Number of enabled channels of the converter that reads the current.
     channels: u32,
-    /// Range of the supply and the points that select it; none on a rig with one range.
+    /// Range of the supply and the points that select it; `None` on a rig with one range.
     range: Option<(RangeSelector, SupplyRange)>,
 }
 
@@ -68,8 +68,8 @@ impl Device {
         })
     }
 
-    /// Returns the acts that select the range while all sources are at zero; when the range does not come, the runner
-    /// skips the remaining acts.
+    /// Returns the acts that select the supply range while all sources are at zero. If the range is not read back in
+    /// time, the runner skips the remaining acts.
     fn range_acts(&self) -> Vec<Act> {
         let range = self.range.iter();
         let acts = range.flat_map(|(selector, range)| {
@@ -90,7 +90,8 @@ impl Device {
         acts.collect()
     }
 
-    /// Returns how the range that was read back differs from the selected one; none when it does not.
+    /// Returns how the range that was read back differs from the selected one; `None` when both agree, or when no range
+    /// was read.
     fn mismatch(&self, readings: &Readings) -> Option<RangeMismatch> {
         let (selector, range) = self.range.as_ref()?;
         let [low, high] = selector.inputs.map(|it| readings.states(it).last());
@@ -125,7 +126,7 @@ impl Device {
         ]
     }
 
-    /// Returns the resistance from the currents of one measurement, or the finding that they show.
+    /// Returns the resistance from the current samples of one measurement, or the finding that these show.
     fn resistance(&self, samples: &[Sample]) -> Result<Reading, Finding> {
         let mut sum = 0.0;
         for sample in samples {
@@ -247,8 +248,8 @@ impl Test {
         self.runner = Runner::new(acts, now);
     }
 
-    /// Returns true when a repeat is due: in a thorough test after every result, in others after one inside the guard
-    /// band. Once begun, repeats continue to the last one.
+    /// Returns true when a repetition is due: in a thorough test after every result, in any other test after a result
+    /// inside the guard band. Once begun, the repetitions continue to the last.
     fn needs_repeat(&self) -> bool {
         let repeating = self.record.attempts(Parameter::Resistance) > 1;
         let conditional = |(_, judgement): &(Characteristic, Judgement)| match judgement {

@@ -1,4 +1,4 @@
-//! Resistor part of a recipe: the part, and how to measure it.
+//! Sections of a recipe for a resistor: the part, and how to measure it.
 
 use super::accuracy::ChannelAccuracy;
 use super::parameter::Parameter;

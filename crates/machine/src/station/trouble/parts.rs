@@ -42,12 +42,13 @@ impl Alarm {
         Self::part_lost(place).case("gone")
     }
 
-    /// Returns the alarm that an earlier run ended between the release of a part and its beam.
+    /// Returns the alarm that an earlier run ended after the release of a part, before the beam of the bin counted it.
     pub fn fall_unseen(bin: Bin) -> Self {
         Self::from(AlarmCode::FallUnseen).with("bin", bin)
     }
 
-    /// Returns the alarm that a run ended before the parts with these scanned numbers came; each with its person.
+    /// Returns the alarm that a run ended before the parts with these scanned numbers came; each number has the name of
+    /// the person who scanned it.
     pub fn scans_dropped(scans: &[(String, String)]) -> Self {
         let named = |(serial, who): &(String, String)| format!("{serial} ({who})");
         let serials: Vec<String> = scans.iter().map(named).collect();

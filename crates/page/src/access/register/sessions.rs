@@ -13,7 +13,7 @@ const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
 /// Name under which wrong set-up codes count; no person can have it.
 const SETUP: &str = "set-up code";
 
-/// Outcome of a try to log in, or to prove one's password.
+/// Outcome of an attempt to log in, or to prove one's password.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Login<T = (Person, String)> {
     /// Name and password are right. Holds the person; after a login also the token of the session.
@@ -23,7 +23,7 @@ pub enum Login<T = (Person, String)> {
         /// True when a person has this name; for the audit, not for the client.
         known: bool,
     },
-    /// The register checked no password, because of too many wrong ones. Holds the time until the next try.
+    /// The register checked no password, because too many were wrong before. Holds the time until the next attempt.
     Wait(Duration),
 }
 

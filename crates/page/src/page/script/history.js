@@ -88,8 +88,8 @@ async function readPart() {
   }
 }
 
-// Groups times into bars; a pause of 50 ms begins a new bar, because readings of one characteristic may lie far apart
-// in a test, as those of NC do.
+// Groups times into bars; a pause of 50 ms begins a new bar, because a test may read one characteristic, such as those
+// of the NC contact, at times far apart.
 function groupTimes(times, name) {
   const bars = [];
   for (const at of times.sort((a, b) => a - b)) {

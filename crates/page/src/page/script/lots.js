@@ -6,7 +6,7 @@ const BOOK = 20;
 const AUDIT = 50;
 let book = [];
 let skipped = 0;
-// Lot and state when the page last read the lots; when they change, the page reads the lots again.
+// Lot and state at the time of the last read; when they change, the page reads the lots again.
 let readFor = "";
 
 const underWay = (lot) => view && view.under_way && view.lot === lot;
@@ -153,7 +153,7 @@ function showWear(counters) {
   }));
 }
 
-// Start of the audit shown: 24 hours cover this shift and the one before.
+// Start of the audit shown: 24 hours ago, which covers this shift and the one before.
 const dayAgo = () => new Date(Date.now() - 24 * 3600 * 1000).toISOString();
 
 function showAudit(orders) {

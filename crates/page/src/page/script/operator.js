@@ -114,7 +114,7 @@ at("scan").addEventListener("submit", async (event) => {
 });
 at("scan_undo").addEventListener("click", () => giveOrder({order: "unscan"}, answerScan));
 
-// The scanner types wherever the focus is; on the operator's page its text belongs into the field. A blank presses the
+// The scanner types wherever the focus is; on the operator's page its text belongs in the field. A blank presses the
 // button that has the focus, and no serial number begins with it.
 document.addEventListener("keydown", (event) => {
   const typed = event.key.length === 1 && event.key !== " " && !event.ctrlKey && !event.altKey && !event.metaKey;

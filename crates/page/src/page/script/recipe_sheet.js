@@ -74,7 +74,7 @@ function fieldInputs(field) {
   return [typedInto(field, make("input", undefined, field.form === "text" ? "" : "number"), text, (it) => it)];
 }
 
-// Numbers of a prompt and of its choice from 1, as in "1.2 Answer, English".
+// Returns the numbers, from 1, of a prompt and its choice, as in "1.2 Answer, English".
 const places = (path) => (path.match(/\d+/g) ?? []).map((it) => Number(it) + 1).join(".");
 
 const fieldName = (path) => {
@@ -99,7 +99,7 @@ function unitCell(field) {
   return cell;
 }
 
-// Adds the reason below the row whose value the rig refused; that of a list below its first row.
+// Adds the reason of a refusal below the row of the refused value; for a list, below its first row.
 function withRefusal(element, path) {
   if (!refusedField) return [element];
   const first = recipe.fields.find((it) => it.path.startsWith(refusedField.key + "."));
@@ -121,7 +121,7 @@ function limitRow(key, [low, high]) {
   return withRefusal(row(nameOf(key), fieldCell(low), fieldCell(high), unitCell(low)), "limits." + key);
 }
 
-// Makes the table of the prompts of every lot, which stand in another file than the recipe.
+// Makes the table of the prompts of every lot, which are in another file than the recipe.
 function lotPrompts() {
   const table = make("table", undefined, "list sheet"), body = make("tbody");
   table.append(make("caption", word("r-prompts_of_lots") + bracketed("lot.toml")), body);

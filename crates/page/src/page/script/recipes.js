@@ -26,7 +26,7 @@ function showRecipe() {
   drawRecipe();
 }
 
-// Shows the engineers who answer for the revision; only one who has not signed may approve it.
+// Shows the engineers who saved or approved the revision; only an engineer who has done neither may approve it.
 function showApproval() {
   const {approved, signatures} = recipe?.approval ?? {approved: true, signatures: []};
   const names = signatures.map((it) => it.who + " " + clock(it.at)).join(comma());
@@ -53,7 +53,7 @@ function showRevisions() {
 
 // --- reading and saving ---
 
-// Returns the message of a read that failed, which the next read replaces.
+// Returns the message of a failed read; the next read replaces the message.
 const failedRead = (error) => Object.assign(() => [error.message, true], {ofRead: true});
 
 async function readRecipe(revision = "") {
@@ -95,7 +95,8 @@ async function enterRecipes(chosen = "") {
   showRecipe();
 }
 
-// Writes found and expected in the language of the page; an English page shows what the rig expects where it has no words.
+// Writes found and expected values in the language of the page. For a requirement without words of its own, an English
+// page shows the text of the rig, a Chinese page a general text.
 function refusedValue(answer) {
   const field = recipe.fields.find((it) => (answer.key + ".").startsWith(it.path + "."));
   const {code, value} = answer.requirement;
@@ -108,7 +109,8 @@ function refusedValue(answer) {
 
 const refusal = (answer) => () => [answer.key ? word("r-refused") : said(answer, "reason"), true];
 
-// Sends a change; returns the message for its outcome, which `saved` makes of the answer to a change that was taken.
+// Sends a change; returns the message about its outcome. `saved` makes the message from the answer to an accepted
+// change.
 async function change(path, body, saved) {
   refusedField = null;
   try {

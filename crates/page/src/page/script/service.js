@@ -30,7 +30,7 @@ function showHost() {
   at("host").textContent = [...rights, ...figures].join(" · ");
   at("lateness").replaceChildren(...lateness.buckets.filter((it) => it.count).map((it) => {
     const bar = make("meter");
-    // A logarithm, because the few late waits are the ones that matter.
+    // A logarithmic scale, because the few late waits are the ones that matter.
     bar.max = Math.log10(1 + lateness.waits);
     bar.value = Math.log10(1 + it.count);
     const element = row(it.up_to_ms.toFixed(3), integerText(it.count), shareText(it.count, lateness.waits));
@@ -62,7 +62,8 @@ function makeJogs() {
   }));
 }
 
-// Shows the guard's decision on a jog in advance; for a refused one the two bodies, with the details as title.
+// Shows in advance the guard's decision on a jog; for a refused jog, the two bodies that would collide, with the
+// details as title.
 function showClearance(item, jog) {
   const text = !jog ? "" : jog.refused ? bodiesText(jog.refused)
     : word("io-clearance") + " " + (jog.clearance_mm === null ? word("io-far") : jog.clearance_mm.toFixed(2) + " mm");

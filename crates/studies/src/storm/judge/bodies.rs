@@ -1,18 +1,19 @@
-//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that no row lacks
-//! a body, and no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the
-//! verdict, and by the body that came to rest in the bin at the confirmation. A body that clung to another one has no
-//! row, because it was never judged; the alarm of the beam that counted it names its bin.
+//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that every row has
+//! a body, and that no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the
+//! verdict, and by the body that came to rest in the bin when the beam confirmed it. A body that clung to another one
+//! has no row, because the rig never judged it; the alarm of the beam that counted it names its bin.
 
 use super::{Case, rig_us, seconds};
 use crate::storm::life::{End, EndedLife};
 use history::{Alarm, Part};
 use rigsim::truth::{BodyTruth, Place};
 
-/// Longest time from a body at rest to its confirmation by the beam, microseconds: fall, second body, repeated polls.
+/// Longest time from a body at rest to its confirmation by the beam, microseconds: it covers the fall, a second body,
+/// and repeated polls.
 const CONFIRMED_US: u64 = 3_000_000;
-/// Time in which the fingers open, microseconds: a run that ends meanwhile declares the part lost before it falls.
+/// Time that the fingers take to open, microseconds: a run that ends meanwhile declares the part lost before it falls.
 const OPENING_US: u64 = 300_000;
-/// Longest time until the reset that detects a lost part, microseconds: the operator may take this long.
+/// Longest time until the reset that detects a lost part, microseconds: the operator may wait this long before it.
 const NOTICED_US: u64 = 60_000_000;
 /// Codes of the alarms that declare a part lost.
 const DECLARED: [&str; 6] = [
@@ -41,8 +42,8 @@ pub fn violations(case: &Case) -> Vec<String> {
     violations
 }
 
-/// Returns each row with its owner, the number of the body, and a description of each row without a body. The bin
-/// identifies the body of a landed part, the place at the verdict any other body.
+/// Assigns each row to its body. Returns the rows with the numbers of their bodies, and a message for each row without
+/// a body. The bin identifies the body of a landed part, the place at the verdict any other body.
 pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
     let (mut owners, mut violations) = (Vec::new(), Vec::new());
     let (landed, other): (Vec<&Part>, Vec<&Part>) =
@@ -61,8 +62,8 @@ pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
     (owners, violations)
 }
 
-/// Returns the body that came to rest in the row's bin just before the beam confirmed it, and was inside at the
-/// verdict.
+/// Returns the body that was in the nest or gripper at the verdict and came to rest in the row's bin just before the
+/// beam confirmed it.
 fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
     let (bin, seen_us) = (row.landed_bin.as_deref()?, rig_us(row.landed_at?));
     let judged_us = rig_us(row.time);
@@ -80,8 +81,8 @@ fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
         .map(|(number, _)| number)
 }
 
-/// Returns the body that was in the nest at the verdict. For a part without a test the body in the gripper comes first,
-/// unless that one has a row in the same life.
+/// Returns the body that was in the nest at the verdict. For a part without a test it prefers the body in the gripper,
+/// unless that body already has a row of the same life.
 fn body_by_place(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<usize> {
     let judged_us = rig_us(row.time);
     let at = |place: &Place| {
@@ -181,14 +182,14 @@ fn in_a_bin(
     }
 }
 
-/// Returns true when an alarm declares a loss at `at_us`: an alarm of the life at that instant, or of a later life up
+/// Returns true when an alarm declares the loss at `at_us`: an alarm of the life at that instant, or of a later life up
 /// to the first that homed.
 fn is_declared(case: &Case, at_us: u64) -> bool {
     has_alarm(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
 
-/// Returns true when an alarm counts a second body in `bin`, or when a kill came first: a killed life may have
-/// confirmed the first body and not yet counted the second.
+/// Returns true when an alarm counts a second body in `bin`, or when a kill may have prevented it: a killed life may
+/// have confirmed the first body and not yet counted the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
     let cut_off = case
@@ -219,8 +220,8 @@ fn has_alarm(case: &Case, at_us: u64, is_wanted: impl Fn(&Alarm) -> bool) -> boo
     }
 }
 
-/// Returns the life of an instant and the lives after it up to the first that judged a part: that life has homed and
-/// detected the loss, so that alarms of later lives have other causes.
+/// Returns the life at an instant and the lives after it, up to the first later life that judged a part: that life has
+/// homed and detected the loss, so that alarms of still later lives have other causes.
 fn responsible_lives<'a>(
     case: &Case,
     at_us: u64,

@@ -1,5 +1,5 @@
-//! Checks that every life ends by itself unless the study kills it, that an alarm in the history names every trouble,
-//! and that production resumes after the faults: the last life completes its lot.
+//! Checks that every life ends by itself unless the study kills it, that every life that ended in trouble has an alarm
+//! in the history, and that production resumes after the faults: the last life completes its lot.
 
 use super::{Case, seconds};
 use crate::storm::life::{End, EndedLife};

@@ -2,12 +2,12 @@
 //!
 //! | file | rules |
 //! |---|---|
-//! | `bodies` | every body lies in the one bin that its row names, or an alarm declares it lost; no row without a body, none twice |
+//! | `bodies` | every body lies in the bin that its row names, or an alarm declares it lost; every row has a body, no body two rows |
 //! | `values` | every value belongs to the body of its row; no defect in the pass bin, no good part in the bin of a defect |
-//! | `motion` | no motion begins after a stop, while a safety input is open, or without a controller |
+//! | `motion` | no driven motion begins after a stop, while a safety input is open, or without a controller |
 //! | `endings` | every life ends, an alarm names every trouble, and production resumes after the faults |
 //!
-//! The rig itself lists bodies that touch where they must not, and overdriven coils.
+//! Touching bodies and overdriven coils need no rule here: the rig itself lists them.
 
 mod bodies;
 mod endings;
@@ -22,7 +22,8 @@ use history::{Alarm, Moment, Part};
 use rigsim::truth::{BodyTruth, Overdrive};
 use units::Span;
 
-/// A case to judge: everything that the rules need. All times are microseconds of rig time, over all lives.
+/// A case to judge: everything that the rules need. All times are microseconds of rig time, which runs on over all
+/// lives.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// Lives of the controller, in order of time.
@@ -31,7 +32,7 @@ pub struct Case {
     pub bodies: Vec<BodyTruth>,
     /// Driven motions: instant of the start, and name of the actuator.
     pub driven: Vec<(u64, &'static str)>,
-    /// Bodies that touched although they must not, as the rig describes them.
+    /// Bodies that touched although they must not, one description by the rig each.
     pub touched: Vec<String>,
     /// Coils driven in a supply range above the commanded one.
     pub overdrives: Vec<Overdrive>,
@@ -43,11 +44,12 @@ pub struct Case {
     pub faults: Vec<String>,
     /// Instants from which a safety input was open.
     pub disturbed_us: Vec<u64>,
-    /// Ranges that the recipe admits.
+    /// Range of each parameter within the limits of the recipe.
     pub limits: Admitted,
     /// Longest reaction to a safety input that the configuration promises.
     pub reaction: Span,
-    /// Longest reaction when lines or modules have faults: outputs wait for the host watchdogs.
+    /// Longest reaction while lines or modules have faults: outputs then stay on until the host watchdogs switch them
+    /// off.
     pub reaction_in_trouble: Span,
     /// Whether lines or modules had faults.
     pub lines_disturbed: bool,

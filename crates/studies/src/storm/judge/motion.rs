@@ -1,12 +1,12 @@
 //! Checks that no driven motion begins while a safety input is open, between an abort and the next reset, or without a
-//! controller. Motions by springs and gravity do not count.
+//! running controller. Motions by springs and gravity do not count.
 
 use super::{Case, seconds};
 use crate::storm::life::End;
 use crate::storm::scenario::DISTURBED_US;
 use std::ops::Range;
 
-/// An interval in which no driven motion may begin, microseconds, and the reason.
+/// An interval in which no driven motion may begin, microseconds, and the reason why.
 struct StillInterval {
     us: Range<u64>,
     why: String,

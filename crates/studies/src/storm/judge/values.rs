@@ -9,10 +9,10 @@ use machine::dut::em_relay::Parameter;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
-/// A value this many expanded uncertainties (k = 2) or more from the truth must belong to another body: these are eight
+/// Distance from the truth, in expanded uncertainties (k = 2), beyond which a value must belong to another body: eight
 /// standard deviations, which a normal error exceeds once in 8 * 10^14 values.
 const FOREIGN_K: f64 = 4.0;
-/// Distance from a limit, in expanded uncertainties, from which a true value is clearly inside or outside.
+/// Distance from a limit, in expanded uncertainties (k = 2), beyond which a true value is clearly inside or outside.
 const CLEAR_K: f64 = 2.0;
 
 pub fn violations(case: &Case) -> Vec<String> {
@@ -54,7 +54,7 @@ impl Reading {
         })
     }
 
-    /// Returns the bin of a part that fails this parameter.
+    /// Returns the bin for parts that fail this parameter.
     fn bin(&self) -> &'static str {
         self.parameter.facts().definition.bin.name()
     }
@@ -75,7 +75,7 @@ fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
 }
 
 fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
-    // Distance of the truth from the nearer limit, above 0 inside the range.
+    // Distance of the truth from the nearer limit; positive inside the range.
     let inside = |it: &Reading| {
         let own = case.limits.iter().find(|(known, _)| *known == it.parameter);
         own.map_or(f64::INFINITY, |(_, range)| {

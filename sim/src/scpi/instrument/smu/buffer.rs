@@ -27,7 +27,7 @@ impl Buffer {
     /// Returns the last reading.
     ///
     /// # Errors
-    /// Fails with -230 without reading.
+    /// Fails with -230 when the buffer is empty.
     pub(super) fn last(&self) -> Result<f64, Failure> {
         let (_, read) = self.0.last().ok_or(Failure::DATA_STALE)?;
         Ok(*read)
@@ -68,7 +68,7 @@ impl Buffer {
     /// Answers a query of `TRACe:STATistics`.
     ///
     /// # Errors
-    /// Fails with -113 for another query, with -230 without reading.
+    /// Fails with -113 for an unknown statistic, with -230 when the buffer is empty.
     pub(super) fn statistic(&self, unit: &Unit) -> Result<f64, Failure> {
         let is = |name: &str| unit.matches(&format!(":TRACe:STATistics:{name}")).is_some();
         let reads = || self.0.iter().map(|(_, read)| *read);

@@ -17,7 +17,7 @@ use sweep::Sweep;
 
 /// Settling of the output after a new level, microseconds.
 const SETTLE_US: u64 = 200;
-/// Time to choose a range by the reading, microseconds.
+/// Time to choose a range automatically, microseconds.
 const RANGING_US: u64 = 2_000;
 /// Resistance of the leads in a two-wire connection, ohms.
 const LEADS_OHM: f64 = 0.15;
@@ -80,7 +80,7 @@ const TABLE: &[Setting] = &[
     Setting("measurement_events", ":STATus:MEASurement:ENABle", Ignored, 1),
 ];
 
-/// Points of a measurement in work; a point without a level leaves the source as it is.
+/// A measurement in progress: its remaining points; a point without a level leaves the source as it is.
 struct Job {
     levels: VecDeque<Option<f64>>,
     delay_us: u64,
@@ -105,7 +105,7 @@ impl Smu {
         }
     }
 
-    /// Returns the setting of the source level.
+    /// Returns the key of the setting that holds the source level.
     fn level_key(&self) -> &'static str {
         match self.body.settings.choice("source") {
             "VOLTage" => "volts",
@@ -113,7 +113,7 @@ impl Smu {
         }
     }
 
-    /// Returns the one of three settings that belongs to the present sense function.
+    /// Returns the value of the one of three settings that belongs to the present sense function.
     fn sense(&self, amps: &'static str, volts: &'static str, ohms: &'static str) -> f64 {
         let settings = &self.body.settings;
         settings.number(match settings.choice("sense") {
@@ -123,7 +123,7 @@ impl Smu {
         })
     }
 
-    /// Returns the resistance of the leads that the unit does not sense, ohms.
+    /// Returns the lead resistance that the measurement includes, ohms: 0 with remote sensing.
     fn leads_ohm(&self) -> f64 {
         match self.sense("amp_wires", "volt_wires", "ohm_wires") {
             0.0 => LEADS_OHM,
@@ -135,7 +135,7 @@ impl Smu {
         self.sense("amp_sense_auto", "volt_sense_auto", "ohm_sense_auto") != 0.0
     }
 
-    /// Connects the source with its errors.
+    /// Connects the source, its errors included.
     fn drive(&mut self, circuit: &mut dyn Circuit) {
         let source_ohm = self.leads_ohm();
         let Body {
@@ -176,10 +176,10 @@ impl Smu {
         circuit.drive(self.body.at, drive);
     }
 
-    /// Starts to measure the points.
+    /// Starts to measure the given points.
     ///
     /// # Errors
-    /// Fails while another measurement is in work.
+    /// Fails while another measurement is in progress.
     fn start(
         &mut self,
         now_us: u64,
@@ -201,7 +201,8 @@ impl Smu {
         Ok(())
     }
 
-    /// Returns the points of a measurement without sweep: the present level, as often as the setting says.
+    /// Returns the points of a measurement without a sweep: the present level, repeated as often as the setting `count`
+    /// says.
     fn present_level(&self) -> VecDeque<Option<f64>> {
         vec![None; self.body.settings.number("count") as usize].into()
     }
@@ -214,7 +215,7 @@ impl Smu {
         Window::open(from_us, cycles * count * 20_000.0, 8)
     }
 
-    /// Turns the mean of a window into a reading with its errors.
+    /// Returns the reading for the mean of a window, errors included.
     fn reading(&mut self, mean: Reading) -> f64 {
         let cycles = self.sense("amp_plc", "volt_plc", "ohm_plc");
         let quiet = 1.0 / cycles.sqrt().max(0.1);
@@ -258,7 +259,7 @@ impl Smu {
         }
     }
 
-    /// Starts the sweep, or a measurement at the present level when there is none.
+    /// Starts the configured sweep, or without one a measurement at the present level.
     fn initiate(&mut self, now_us: u64, circuit: &mut dyn Circuit) -> Result<(), Failure> {
         let (levels, delay_us) = match self.sweep.clone() {
             Some(sweep) if sweep.key != self.level_key() => return Err(Failure::SETTINGS_CONFLICT),
@@ -270,7 +271,7 @@ impl Smu {
         Ok(())
     }
 
-    /// Sets the level of the next point.
+    /// Sets the source to the level of the next point.
     fn next_level(&mut self, circuit: &mut dyn Circuit) {
         let level = self.job.as_ref().and_then(|job| *job.levels.front()?);
         if let Some(level) = level {
@@ -394,7 +395,7 @@ fn measured(unit: &Unit) -> Option<f64> {
 const VOLTS: [f64; 5] = [0.02, 0.2, 2.0, 20.0, 200.0];
 const AMPS: [f64; 9] = [1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 
-/// Returns the smallest range that holds a value.
+/// Returns the smallest range that holds the value.
 fn step_for(value: f64, steps: &[f64]) -> f64 {
     let fits = steps.iter().find(|step| value.abs() <= **step * 1.05);
     *fits.unwrap_or(&steps[steps.len() - 1])
@@ -405,7 +406,7 @@ fn range_of(settings: &Settings, level: &str, range: &str, auto: &str, steps: &[
     step_for(settings.number(of), steps)
 }
 
-/// Returns the value, infinite beyond the range.
+/// Returns the value, or infinity when it exceeds the range.
 fn within(value: f64, range: f64) -> f64 {
     if value.abs() > 1.055 * range {
         f64::INFINITY.copysign(value)
@@ -414,7 +415,7 @@ fn within(value: f64, range: f64) -> f64 {
     }
 }
 
-/// Returns gain and offset of the current measurement, one year.
+/// Returns one-year gain and offset limits of the current measurement.
 fn current_accuracy(range: f64) -> (f64, f64) {
     match range {
         ..=1e-8 => (1e-3, 5e-11),

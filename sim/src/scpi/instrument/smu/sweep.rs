@@ -8,10 +8,10 @@ use crate::scpi::status::Failure;
 const VOLTS: &str = "[:SOURce#]:SWEep:VOLTage:LINear[:STEP]";
 const AMPS: &str = "[:SOURce#]:SWEep:CURRent:LINear[:STEP]";
 
-/// Most points of a sweep.
+/// Greatest number of points of a sweep.
 const POINTS: f64 = 1e6;
 
-/// The setting that a sweep varies, its values, and the delay at each of them.
+/// A sweep: the setting that it varies, its values, and the delay at each of them.
 #[derive(Clone)]
 pub(super) struct Sweep {
     pub(super) key: &'static str,
@@ -38,7 +38,7 @@ impl Sweep {
         let (from, to) = (level(0)?, level(1)?);
         let (count, step) = if unit.nodes.iter().any(|node| node == "STEP") {
             let step = unit.number(2, -2.0 * most, 2.0 * most, 0.0)?.abs();
-            // The sweep ends at the last step before the stop; rounding does not count as passing it.
+            // The sweep ends at the last step before `to`; a step that exceeds `to` only by rounding counts.
             let steps = ((to - from).abs() / step + 1e-6).floor();
             (steps + 1.0, step.copysign(to - from))
         } else {

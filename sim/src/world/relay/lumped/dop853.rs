@@ -9,7 +9,7 @@
 
 use super::State;
 
-/// Instants of the stages as fractions of the step; the first stage is the known slope.
+/// Instants of the stages as fractions of the step; the first stage is the slope at the start.
 const C: [f64; 10] = [
     0.526001519587677318785587544488e-1,
     0.789002279381515978178381316732e-1,
@@ -121,7 +121,7 @@ const B3: [f64; 3] = [
     0.220588235294117647058823529412e-1,
 ];
 
-/// Number of evaluations per step; the slope at the start is known.
+/// Number of evaluations per step; the slope at the start is already known.
 pub const EVALUATIONS: u64 = 11;
 
 /// Result of a trial step.
@@ -144,8 +144,8 @@ fn blend<const N: usize>(weights: &[f64; N], slopes: [&State; N]) -> State {
     sum
 }
 
-/// Returns the state after `h` along weighted slopes. The latest slope comes last, so that only one product and
-/// one sum wait for it.
+/// Returns the state after `h` seconds along weighted slopes. The latest slope must come last: then only one product
+/// and one sum wait for it.
 #[inline]
 fn along<const N: usize>(from: &State, h: f64, weights: &[f64; N], slopes: [&State; N]) -> State {
     let mut to = *from;
@@ -158,8 +158,8 @@ fn along<const N: usize>(from: &State, h: f64, weights: &[f64; N], slopes: [&Sta
     to
 }
 
-/// Takes a trial step of `h` seconds from `s` at `t` with slope `k1`; `scale` is the permitted error of each
-/// state, absolute and relative.
+/// Takes a trial step of `h` seconds from state `s` at time `t` with the slope `k1`; `scale` is the permitted error of
+/// each state, absolute and relative.
 #[inline]
 pub fn step(
     f: impl Fn(f64, &State) -> State,

@@ -59,13 +59,13 @@ impl Model {
         self.ohm
     }
 
-    /// Changes the temperature of the copper, given as the coil resistance in ohm.
+    /// Changes the temperature of the copper; the argument is the coil resistance at that temperature, ohm.
     pub fn set_ohm(&mut self, ohm: f64) {
         self.ohm = ohm;
         self.eddy = 1.0 / (1.0 + ohm * self.p.k_ec * self.per_turns2);
     }
 
-    /// Returns the pole area, times `mu0`, as fringing spreads it at this gap: `mu0 A + Pf g`.
+    /// Returns `mu0` times the pole area, widened by fringing at this gap: `mu0 A + Pf g`.
     #[inline]
     pub(super) fn spread(&self, gap: f64) -> f64 {
         self.mu_a + self.p.Pf * gap
@@ -88,13 +88,13 @@ impl Model {
         0.5 * phi * phi * self.mu_a / (spread * spread)
     }
 
-    /// Returns the coil current that a constant flux needs, A.
+    /// Returns the coil current that holds the flux of this state constant, A.
     #[inline]
     fn still_current(&self, s: &State) -> f64 {
         s[LAMBDA] * self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]) * self.per_turns2
     }
 
-    /// Returns the rate of the flux linkage, V.
+    /// Returns the rate of change of the flux linkage, V.
     #[inline]
     fn flux_rate(&self, t_s: f64, current: f64, modes: Modes, drive: &Drive) -> f64 {
         match *drive {
@@ -110,14 +110,14 @@ impl Model {
         }
     }
 
-    /// Returns the rate of the flux linkage when eddy currents alone carry it, V.
+    /// Returns the rate of change of the flux linkage while eddy currents alone carry the flux, V.
     #[inline]
     fn blocked_rate(&self, current: f64) -> f64 {
         -current * self.p.N * self.p.N / self.p.k_ec
     }
 
-    /// Returns the rate of the flux linkage while the armature rests, V; decides from the state, without a flag,
-    /// whether the suppression conducts.
+    /// Returns the rate of change of the flux linkage while the armature rests, V; the state itself, not a flag,
+    /// decides whether the suppression conducts.
     pub fn resting_flux_rate(&self, t_s: f64, s: &State, drive: &Drive) -> f64 {
         let current = self.still_current(s);
         let conducting = self.flux_rate(t_s, current, Modes::default(), drive);
@@ -127,9 +127,8 @@ impl Model {
         }
     }
 
-    /// Returns the time constant of the flux linkage while the armature rests, s: of winding and eddy currents
-    /// together, or of eddy currents alone while the suppression circuit lets no current through
-    /// the winding.
+    /// Returns the time constant of the flux linkage while the armature rests, s: that of winding and eddy currents
+    /// together, or of eddy currents alone while the suppression blocks the coil current.
     pub fn flux_time_s(&self, s: &State, flux_rate: f64, drive: &Drive) -> f64 {
         let reluctance = self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]);
         let eddy = self.p.k_ec / reluctance;
@@ -142,12 +141,12 @@ impl Model {
         }
     }
 
-    /// Returns the coil current at a rate of the flux linkage, A.
+    /// Returns the coil current for a rate of change of the flux linkage, A.
     pub fn current_at(&self, s: &State, flux_rate: f64) -> f64 {
         self.still_current(s) + self.p.k_ec * self.per_turns2 * flux_rate
     }
 
-    /// Returns the rates of the five states.
+    /// Returns the rates of change of the five states.
     #[inline]
     pub fn rates(&self, t_s: f64, s: &State, modes: Modes, drive: &Drive) -> State {
         let p = &self.p;
@@ -181,7 +180,7 @@ impl Model {
         [flux, v, armature * per_armature, w, tip * per_tip]
     }
 
-    /// Returns the gap function of an element; a value above zero sets the flag of the element.
+    /// Returns the gap function of an element; a value above zero means that the element is engaged.
     #[inline]
     pub fn gap(&self, element: Element, s: &State, drive: &Drive) -> f64 {
         match (element, drive) {

@@ -1,4 +1,4 @@
-//! Modes of the unilateral elements: a flag for each, and the gap function that sets it.
+//! Modes of the unilateral elements (contacts, stops, suppression): a flag for each, and the gap function that sets it.
 //!
 //! The equations use the flag, never the sign of the gap function. An event occurs when that sign no longer matches the
 //! flag, so rounding near a root cannot cause chatter.
@@ -24,7 +24,7 @@ impl Element {
     /// The four mechanical contacts and stops.
     pub const TOUCHING: [Element; 4] = [Element::Backstop, Element::Seat, Element::Nc, Element::No];
 
-    /// Returns the name in files.
+    /// Returns the name of the element in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Backstop => "backstop",
@@ -75,7 +75,7 @@ impl StopPositions {
         }
     }
 
-    /// Returns the rate of that overlap, m/s.
+    /// Returns the rate of change of the overlap of [`Self::overlap`], m/s.
     #[inline]
     pub fn rate(self, element: Element, s: &State) -> f64 {
         match element {

@@ -5,8 +5,8 @@ use crate::table::{Entry, Read};
 
 macro_rules! parameters {
     ($($(#[$doc:meta])* $name:ident = $value:expr, $rule:ident;)*) => {
-        /// Parameters of a relay with the names of the equations in [`super`]; all coordinates refer to the pole
-        /// face. The default is the reference relay of this project: 12 V, 400 ohm, one changeover contact.
+        /// Parameters of a relay, named as in the equations in [`super`]; all coordinates refer to the pole face. The
+        /// default is the reference relay of this project: 12 V, 400 ohm, one changeover contact.
         #[allow(non_snake_case)] // the names of the equations and of the files that carry them
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Parameters { $($(#[$doc])* pub $name: f64),* }
@@ -26,7 +26,8 @@ macro_rules! parameters {
                 true
             }
 
-            /// Returns the name and the permitted range of the first parameter outside its range.
+            /// Returns name and permitted range of the first parameter that lies outside its range; `None` when all are
+            /// valid.
             pub fn fault(&self) -> Option<(&'static str, &'static str)> {
                 let found = [$((stringify!($name), self.$name, Rule::$rule)),*];
                 found.into_iter().find(|(_, value, rule)| !rule.admits(*value)).map(|(name, _, rule)| (name, rule.text()))

@@ -1,10 +1,10 @@
-//! Event-driven integration: steps with error control that end exactly where a mode changes.
+//! Event-driven integration: error-controlled steps that end exactly where a mode changes.
 //!
 //! - The flags are constant within a step. After the step the solver compares every gap function with its flag.
-//! - To locate a change it repeats the step with trial lengths (Illinois secant), so the instant has the full
-//!   order of the method. The earliest of several changes counts.
-//! - Two changes within one step leave the signs unchanged. A cubic through the overlap of a stop and its rate at
-//!   both ends reveals them: where its turning point comes near the touch, the step ends there.
+//! - To locate a change it repeats the step with trial lengths (Illinois secant method), so the instant has the full
+//!   order of the method. Of several changes in one step, the earliest counts.
+//! - Two opposite changes within one step leave the signs unchanged. A cubic through the overlap of a stop and its rate
+//!   at both ends of the step reveals them: where the cubic turns close to the touch, the step ends there.
 //! - The step after a change is short.
 
 use super::State;
@@ -45,13 +45,13 @@ pub enum SolveError {
     },
 }
 
-/// First step, and longest step after an event, s; the contacts oscillate with periods from 50 us.
+/// First step, and longest step after an event, s; the contacts oscillate with periods of 50 us and longer.
 const SHORT_S: f64 = 1e-6;
 /// Longest step, s: a few time constants of the flux.
 const LONG_S: f64 = 2e-3;
 /// Shortest useful step, s: the rounding of the instant itself.
 const SHORTEST_S: f64 = 1e-17;
-/// Distance from the start of a step within which a turning point counts as checked, s.
+/// Distance from the start of a step within which a turning point counts as already checked, s.
 const NEAR_S: f64 = 1e-9;
 /// Limit of the number of evaluations: a second of chatter.
 const EVALUATION_LIMIT: u64 = 400_000_000;
@@ -74,7 +74,7 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// Starts in a state; `relative` is the permitted error of a step as a fraction of the state.
+    /// Starts in the given state; `relative` is the permitted error of a step as a fraction of the state.
     pub fn new(model: &Model, drive: &Drive, t_s: f64, state: State, relative: f64) -> Self {
         Self {
             t_s,
@@ -175,7 +175,7 @@ impl Solver {
         }
     }
 
-    /// Ends the step at a turning point where an overlap comes near a touch.
+    /// Shortens the step to the turning point of an overlap that comes close to a touch or passes it twice.
     fn cut_at_graze(
         &mut self,
         model: &Model,
@@ -210,7 +210,7 @@ impl Solver {
         best
     }
 
-    /// Returns the earliest change of a flag within a step, with the state there.
+    /// Returns the earliest change of a flag within a step: step length, state and element; `None` without a change.
     fn first_change(
         &mut self,
         model: &Model,

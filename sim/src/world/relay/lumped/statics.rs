@@ -1,10 +1,10 @@
 //! Static equilibrium of the relay, and the threshold voltages at which it ends.
 //!
-//! The voltage that balances the load at a travel `x` is `V = (R / N) phi Rel(phi, g)` with `phi = sqrt(2 F / mu
-//! A) D(g)`. As the voltage changes slowly, the armature follows until `V` reverses: a fold. The pickup fold is
-//! where the NC contact opens, the release fold where the armature leaves the seat. Both lie within 1e-9 m of the
-//! kink of the load, so the solver finds each as the root of `d ln V` along the overlap of that contact (or
-//! seat), where the problem is well conditioned.
+//! The voltage that balances the load at a travel `x` is `V = (R / N) phi Rel(phi, g)` with `phi = sqrt(2 F / mu A)
+//! D(g)`. As the voltage changes slowly, the armature follows until `V` reverses: a fold. The pickup fold is where the
+//! NC contact opens, the release fold where the armature leaves the seat. Both lie within 1e-9 m of the kink of the
+//! load. The solver therefore finds each fold as the root of `d ln V` along the overlap of that contact (or seat),
+//! where the problem is well conditioned.
 
 use super::model::Model;
 use super::{State, X, Y};
@@ -48,7 +48,7 @@ impl Model {
         (2.0 * newtons.max(0.0) / self.mu_a).sqrt() * self.spread(gap)
     }
 
-    /// Returns the rate of `ln V` along a branch.
+    /// Returns the rate of change of `ln V` along a branch of the equilibrium.
     fn steepness(&self, load: &Load) -> f64 {
         let gap = self.p.X - load.x;
         let phi = self.flux_of(load.newtons, gap);
@@ -133,9 +133,9 @@ impl Model {
         self.balance(load.x, load.newtons)
     }
 
-    /// Returns the quasi-static release: the fold at which the armature leaves the seat. Where the load falls
-    /// faster than the pull, the armature follows the voltage for a while and the fold lies before the seat; then
-    /// the greatest travel at which the equilibrium reverses counts.
+    /// Returns the quasi-static release: the fold at which the armature leaves the seat. Where the load falls faster
+    /// than the pull, the armature follows the voltage for a while and the fold lies before the seat: then the release
+    /// is the greatest travel at which the equilibrium reverses.
     pub fn release(&self) -> Balance {
         let deepest = self.stop.depth(1e3);
         let depth = root(deepest, |depth| -self.steepness(&self.load_on_seat(depth)));
@@ -158,7 +158,7 @@ impl Model {
         self.settled(volts, 0.0)
     }
 
-    /// Returns the seated state at this coil voltage, which must hold the armature.
+    /// Returns the state on the seat at this coil voltage, which must hold the armature.
     pub fn sealed(&self, volts: f64) -> State {
         self.settled(volts, self.p.X)
     }
@@ -205,8 +205,8 @@ impl Model {
     }
 }
 
-/// Returns the root between 0 and `high` of a falling function that is positive at 0; searches on a logarithmic scale.
-/// Returns 0 if the function is never positive.
+/// Returns the root of a falling function between 0 and `high`, searched on a logarithmic scale; 0 when the function is
+/// never positive.
 fn root(high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (high * 1e-18, high);
     if f(low) <= 0.0 {

@@ -1,4 +1,4 @@
-//! A compliant stop: Hertz spring with the loss of Hunt and Crossley.
+//! A compliant stop: Hertz spring with Hunt-Crossley damping.
 //!
 //! `F = k d^1.5 (1 + chi d')` while the bodies overlap by `d`; the force is never a pull. It grows from zero at
 //! the touch, so the motion is smooth enough for a method of high order. The rebound speed `v_o` has the closed
@@ -14,7 +14,7 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Returns the force at an overlap `depth` in m that grows with `speed` in m/s; zero without overlap.
+    /// Returns the force at an overlap of `depth` (m) whose rate of change is `speed` (m/s), N; zero without overlap.
     #[inline]
     pub fn push(self, depth: f64, speed: f64) -> f64 {
         if depth <= 0.0 {
@@ -29,13 +29,13 @@ impl Stop {
         (force.max(0.0) / self.k).cbrt().powi(2)
     }
 
-    /// Refines a nearby overlap by one step of Newton's method; the error becomes its square.
+    /// Refines an approximate overlap by one step of Newton's method, which squares the error.
     #[inline]
     pub fn refine(self, known: f64, force: f64) -> f64 {
         let next = known / 3.0 + force / (1.5 * self.k * known.sqrt());
         match known > 0.0 && force > 0.0 && next < 4.0 * known {
             true => next,
-            // The start value is far off, or there is no overlap.
+            // The start value is far off, or the force needs no overlap.
             false => self.depth(force),
         }
     }

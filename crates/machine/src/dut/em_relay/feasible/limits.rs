@@ -1,4 +1,4 @@
-//! Limits of a recipe beyond the reach of its test: with them every part would fail, or a bad one would pass.
+//! Limits of a recipe beyond the reach of its test: with such a limit every part would fail, or a bad part would pass.
 
 use super::Reach;
 use crate::dut::accuracy::READABLE_V;
@@ -32,7 +32,7 @@ pub(super) fn faults(
 }
 
 /// Returns the highest value that the test can find, in the unit of the parameter, and what sets this bound. `None` for
-/// the coil resistance, whose current channel another check covers.
+/// the coil resistance: another check compares it with the range of its current channel.
 fn most(parameter: Parameter, recipe: &RelayRecipe, reach: &Reach) -> Option<(f64, String)> {
     let test = &recipe.test;
     let most = match parameter {

@@ -13,11 +13,12 @@ use units::{Ampere, Volt};
 
 /// Lowest voltage at the terminal of a current channel that a test can distinguish from no current.
 const LEAST_CURRENT_V: f64 = 0.3;
-/// Share by which a good coil may differ from its nominal resistance where the recipe sets no limit.
+/// Assumed difference of a good coil from its nominal resistance, as a share of the latter, where the recipe sets no
+/// limit.
 const USUAL_SPREAD: f64 = 0.1;
 
-/// Returns the demand of a test on the supply: the greater of the nominal voltage and the top of the coarse ramp, with
-/// the tolerance of the sources, and the current of the lowest accepted coil at nominal voltage.
+/// Returns the demand of a test on the supply. Voltage: the nominal voltage or the top of the coarse ramp, whichever is
+/// higher, with the tolerance of the sources. Current: that of the lowest accepted coil at nominal voltage.
 pub fn demand(recipe: &RelayRecipe, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
     let (part, test) = (&recipe.part, &recipe.test);
     let tolerance = 1.0 + accuracy.ao_gain_pct / 100.0;

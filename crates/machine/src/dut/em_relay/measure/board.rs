@@ -1,8 +1,10 @@
 //! State of interface board, coil supply and armature between two stages of a test.
 //!
 //! Each stage builds its acts on the state that the stage before left, and returns the state that these acts leave. Its
-//! conclusion corrects that state when the part has not moved as planned. "The mark" is the last instant marked by any
-//! stage.
+//! conclusion corrects that state when the part has not moved as planned.
+//!
+//! "The mark" is the last instant marked by any stage. ARM is the output `arm`: its rising edge makes the board wait
+//! for the next contact event.
 
 use super::{Context, INTERLOCK, set};
 use crate::dut::em_relay::act::Act;
@@ -34,8 +36,8 @@ pub struct BoardState {
 pub enum Armature {
     /// Unknown: the next stage first takes the drive off or seals the armature.
     Unknown,
-    /// At rest, drive off, supply at nominal, source on, board armed, counters read: switching the drive on starts a
-    /// timed operation.
+    /// At rest with the drive off, supply at nominal, source on, board armed, counters read: switching the drive on
+    /// starts a timed operation.
     ReadyForTiming,
     /// At rest on the pre-bias, armed in ramp mode: the coarse operate ramp may begin.
     ReadyForRamp,
@@ -106,8 +108,8 @@ impl BoardState {
     }
 }
 
-/// Selects the coil suppression of the recipe when `on`, else the zener; returns no act when the recipe uses the zener.
-/// The board switches the suppression only below 1 mA of coil current.
+/// Selects the coil suppression of the recipe when `on`, else the zener; returns no act for a recipe that uses the
+/// zener. The board switches the suppression only below 1 mA of coil current.
 pub(super) fn select_diode(context: &Context, on: bool) -> Option<Act> {
     match context.relay.test.suppression {
         Suppression::Zener => None,

@@ -1,5 +1,5 @@
-//! Coil resistance at the pre-bias, where the armature is open and L/R short. The operate ramp starts from the
-//! pre-bias too, so the coil stays on.
+//! Coil resistance at the pre-bias, where the armature is open and the time constant L/R short. The operate ramp starts
+//! from the pre-bias too, so the coil stays driven.
 
 use super::board::{Armature, BoardState, select_diode};
 use super::state::TestState;
@@ -20,7 +20,8 @@ use units::{Ohm, Span, Volt};
 
 /// Number of channels of the coil converter that a recipe enables.
 const CHANNELS: usize = 2;
-/// Coil voltage, as a fraction of the pre-bias, below which the supply or the probe-up chain is faulty, not the coil.
+/// Coil voltage, as a fraction of the pre-bias, below which the fault lies in the supply or the probe-up chain, not in
+/// the coil.
 const LEAST_PREBIAS: f64 = 0.5;
 /// Terminal voltage of the fine current channel (0.25 mA) below which the coil counts as open.
 const NO_CURRENT: Volt = Volt(0.15);
@@ -42,8 +43,8 @@ const IDLE: [(DigitalOut, bool); 8] = [
     (KelvinTest, true),
 ];
 
-/// Reads the coil, with the board already armed for the operate ramp, because the supply must stay still between ARM
-/// and ramp. A repeated stage first releases the relay and takes the ramps down.
+/// Reads the coil. The stage arms the board for the operate ramp before it reads, because the supply must stay still
+/// between ARM and ramp. A repeated stage first releases the relay and takes the ramps down.
 pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let prebias = Volt(context.relay.test.prebias_v);
@@ -95,8 +96,9 @@ pub(super) fn acts_off(
     mut board: BoardState,
     stopped: bool,
 ) -> (Vec<Act>, BoardState) {
-    // The cycle writes only values that change. After an early end, these outputs go off before they take `IDLE`, and
-    // the level below goes to zero: these writes show a module that ignores them because its host watchdog has tripped.
+    // The cycle writes only values that change. After an early end these outputs first go off and then take `IDLE`, and
+    // the level below goes to zero, so that writes go out which a module with a tripped host watchdog ignores, and
+    // thereby shows its fault.
     let mut acts = vec![set(&IDLE.map(|(output, on)| (output, on && !stopped)))];
     acts.extend(stopped.then(|| set(&IDLE)));
     let freed = match context.relay.test.suppression {
@@ -189,7 +191,8 @@ pub(super) fn conclude(
     None
 }
 
-/// Returns the resistance in series with `coil`, between supply and pins, from the calibrated input and supply.
+/// Returns the resistance in series with `coil`, between supply and pins, from the calibrated input and supply; `None`
+/// when a scan lacks the coil voltage.
 fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     let at_pins = |scan: &CoilScan| {
         let Sample {

@@ -8,7 +8,7 @@ use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, KelvinTest, RampMode, SourceOn};
 use units::{Span, Volt};
 
-/// Drive on for this time, then off for as long: operation, release and bounce end within it, with a diode too.
+/// Time for which the drive is on, and then off; operation, release and bounce end within it, with a diode too.
 const HALF: Span = Span::ms(40);
 /// Longest time of one operation on a line that repeats requests.
 const OPERATION: Span = Span::ms(250);

@@ -30,7 +30,7 @@ fn directed(context: &Context, reverse: bool) -> [Act; 4] {
     ]
 }
 
-/// Returns the acts that read the polarities after the first forward one; the source stays on in its last direction.
+/// Returns the acts that read every polarity after the first, forward one; the source stays on in its last direction.
 pub(super) fn reversed(context: &Context) -> Vec<Act> {
     let mut acts = directed(context, true).to_vec();
     match context.relay.test.strategy.contact.polarities {
@@ -47,7 +47,7 @@ pub(super) fn reversed(context: &Context) -> Vec<Act> {
     acts
 }
 
-/// Reads the polarities of the NC contact at rest. During the first conversion the stage reads the temperature and
+/// Reads the NC contact at rest in all polarities. During the first conversion the stage reads the temperature and
 /// prepares the timed operation: ARM, counters, supply at nominal with the drive off.
 pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
     let mut acts = vec![
@@ -78,7 +78,7 @@ pub(super) fn drop_of(sample: Option<&Sample>, compliance: bool) -> Result<Volt,
     }
 }
 
-/// Reason for a drop that is not read.
+/// Reason why a reading gives no drop.
 pub(super) enum Unread {
     /// No usable sample.
     Missing,
@@ -134,8 +134,8 @@ pub(super) fn conclude_nc(
     None
 }
 
-/// Returns true for a resistance below any real contact, and ends the test: the source was off, or the reply belongs to
-/// another request.
+/// Ends the test and returns true when the resistance is below that of any real contact: the source was off, or the
+/// reply belongs to another request.
 pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecord) -> bool {
     let implausible = mohm.is_nan() || mohm < LEAST_MOHM;
     if implausible {
@@ -145,7 +145,7 @@ pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecor
     implausible
 }
 
-/// Returns true when more closures would not change the judgement of this contact.
+/// Returns true when further closures would not change the judgement of this contact.
 pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Parameter) -> bool {
     let (recipe, record) = (&context.recipe, &state.record);
     let per_v = context.calibration.contact_mohm_per_v.value;

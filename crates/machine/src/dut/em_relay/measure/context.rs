@@ -20,8 +20,8 @@ use crate::rig::supply::{RangeMismatch, SupplyRange};
 use std::sync::Arc;
 use units::{Celsius, Ohm, Span, Volt};
 
-/// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. In another
-/// supply range the overshoot lasts as long, so its volts are proportional to the rate of the ramp.
+/// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. The delay
+/// behind it is the same in every supply range, so its volts are proportional to the rate of the ramp.
 const ASSUMED_OPERATE: Volt = Volt(0.85);
 const ASSUMED_RELEASE: Volt = Volt(-1.05);
 
@@ -33,7 +33,7 @@ const ASSUMED_FINE: [Volt; 2] = [Volt(0.03), Volt(-0.02)];
 pub struct Context {
     /// Limits and decision rule.
     pub recipe: Arc<Recipe>,
-    /// The relay part of the recipe.
+    /// The recipe's sections for a relay.
     pub relay: Arc<RelayRecipe>,
     /// Factors in force.
     pub calibration: Arc<Calibration>,
@@ -51,7 +51,7 @@ pub struct Context {
     pub probe_contact: Option<Ohm>,
     /// True for a reference check or a first article: every result gets confirmation measurements.
     pub thorough: bool,
-    /// The reference part in the nest while the overshoot is being learned: its certificate places its fine ramps.
+    /// The reference part in the nest while the overshoot is being learned; its certificate places the fine ramps.
     pub teaching: Option<ReferencePart>,
 }
 
@@ -89,7 +89,7 @@ impl Context {
     /// Returns the uncertainty terms of a coil scan.
     pub fn scan_uncertainty(&self) -> ScanUncertainty {
         let promised_k = self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k);
-        // The correction by reference parts contains the error of the thermometer.
+        // The correction by reference parts already contains the error of the thermometer.
         let found = self.calibration.temperature.map(|it| it.part_k);
         ScanUncertainty {
             reading_v: self.reading_u_v(),
@@ -98,7 +98,8 @@ impl Context {
         }
     }
 
-    /// Returns the temperature of a part against the track, kelvin: as promised before the reference parts are measured.
+    /// Returns the temperature of a part relative to the track, kelvin; before the reference parts are measured, the
+    /// one that `rig.toml` promises.
     pub fn part_k(&self) -> Deviation {
         let found = self.calibration.temperature.map(|it| it.part_k);
         found.unwrap_or(Deviation::known(self.accuracy.part_minus_track_k))
@@ -109,8 +110,8 @@ impl Context {
         self.scale().operation_v(&self.accuracy)
     }
 
-    /// Returns the relative standard uncertainty of a threshold from the change of the probe contact since the
-    /// measurement of the reference parts; no correction removes it.
+    /// Returns the relative standard uncertainty of a threshold that comes from the change of the probe contact since
+    /// the reference parts were measured. The test does not correct this change.
     pub fn contact_share(&self) -> f64 {
         let then_ohm = self.calibration.probe_contact_ohm;
         let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
@@ -131,7 +132,7 @@ impl Context {
     }
 
     /// Returns the strategy for a threshold. Reference parts, and the first parts of a lot under `adaptive`, get both
-    /// ramps: the overshoot model learns from them.
+    /// ramps, because the overshoot model learns from them.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
         let overshoot = self.overshoot(match parameter == Parameter::ReleaseVoltage {
             true => Direction::Falling,
@@ -146,7 +147,7 @@ impl Context {
         }
     }
 
-    /// Returns the overshoot of a direction; before any reference part an assumed one with a wide scatter.
+    /// Returns the overshoot of a direction; before any reference part, an assumed overshoot with a wide scatter.
     pub fn overshoot(&self, direction: Direction) -> Overshoot {
         let ((operate, release), [rising, falling]) =
             (self.assumed_models(), self.assumed_fine_v());
@@ -158,7 +159,7 @@ impl Context {
         }
     }
 
-    /// Returns the models of both coarse ramps before the first part, operate and release.
+    /// Returns the models of both coarse ramps, operate and release, before any part has taught them.
     pub fn assumed_models(&self) -> (OvershootModel, OvershootModel) {
         let scale = self.scale();
         let model = |guess| OvershootModel::guess(scale.of_range(guess).0, scale.coil());
@@ -176,14 +177,14 @@ impl Context {
         Scale::new(self.relay.part.nominal_v, factor)
     }
 
-    /// Returns the code of the range to select; none on a rig with one range.
+    /// Returns the code of the range to select; `None` on a rig with one range.
     pub fn range_code(&self) -> Option<u8> {
         let range = self.range.as_ref();
         range.filter(|it| it.is_selected()).map(|it| it.code)
     }
 
-    /// Returns how the range that was read back differs from the selected one; none when it does not differ, or when no
-    /// range was read.
+    /// Returns how the range that was read back differs from the selected one; `None` when both agree, or when no range
+    /// was read.
     pub fn range_mismatch(&self, read_back: Option<u8>) -> Option<RangeMismatch> {
         let (range, selector) = (self.range.as_ref()?, self.points.range.as_ref()?);
         selector.mismatch(range, read_back?)

@@ -42,7 +42,8 @@ pub(super) fn conclude(
         fine: Some(seen),
         ..known.unwrap_or(Ramp::fine_only(seen))
     };
-    // Repeats find a warmer coil: models and overshoots learn from the first fine ramp, the only one of most parts.
+    // Models and overshoots learn from the first fine ramp only: repeats find a warmer coil, and most parts have no
+    // repeat.
     if known.is_none_or(|ramp| ramp.fine.is_none()) {
         record.forget(parameter);
         record.keep_ramp(direction, ramp);
@@ -83,7 +84,7 @@ fn evaluate(
     let stopped = stopped_at(sent.start, sent.span, seen);
     let left = sent.takes.0.saturating_sub(Span::seconds(gate.0).0);
     board.still_ramping = Span(if met { left } else { 0 });
-    // An event before the interval comes from the approach, not from the ramp.
+    // An event before the interval comes from the swing after the approach, not from the ramp.
     let settled = match direction {
         Direction::Rising => Pace::of(record).run_up(v_per_s),
         Direction::Falling => scale.of_range(SETTLED_DOWN),

@@ -13,7 +13,8 @@ use crate::dut::em_relay::timing::counts;
 use crate::gauge::budget::Reading;
 use units::{Celsius, Second, Volt};
 
-/// Returns the time for which gate 0 was open between the last two readings.
+/// Returns the time for which gate 0 was open between the last two readings, less the delay of the gate; `None` with
+/// fewer than two readings.
 pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     let [.., before, after] = readings.gates.as_slice() else {
         return None;
@@ -27,7 +28,7 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
 /// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught the
 /// model.
 ///
-/// The learned scatter already contains resolution, repeatability and slope error, so the budget does not add them.
+/// The learned scatter already contains resolution, repeatability and slope error, so the budget has no terms for them.
 pub(super) fn coarse_reading(
     context: &Context,
     (seen, overshoot): (CoarseResults, Overshoot),
@@ -35,8 +36,8 @@ pub(super) fn coarse_reading(
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = overshoot.coarse.of(&seen);
-    // The learned scatter includes the scatter of the operation on the fine ramp, but this value comes from the coarse
-    // ramp alone.
+    // The learned scatter includes the scatter of the operation on the fine ramp, which is subtracted, because this
+    // value comes from the coarse ramp alone.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let uncertainty = RampUncertainty {
@@ -44,7 +45,7 @@ pub(super) fn coarse_reading(
         slope_known: true,
         operation_v: 0.0,
         refresh: Second(0.0),
-        // The model is learned from indications, gain error included.
+        // The model learns from indications, which include the gain error.
         level_share: 0.0,
         ..uncertainty(context)
     };
@@ -63,7 +64,8 @@ pub(super) fn coarse_reading(
     predicted.alike.then_some(reading)
 }
 
-/// Returns the threshold: from a fine ramp and the overshoot of reference parts, or from both ramps by their two rates.
+/// Returns the threshold from a fine ramp and the overshoot of reference parts, or from both ramps by the law of their
+/// rates.
 pub(super) fn fine_reading(
     context: &Context,
     (ramps, gate): (Ramp, Second),
@@ -88,7 +90,7 @@ pub(super) fn fine_reading(
             context.calibration.fine_v_per_s.value,
         ];
         let sign = direction.sign();
-        // The overshoots at both rates on reference parts give the growth time; their common offset cancels.
+        // The overshoots of reference parts at both rates give the growth time; their common offset cancels.
         let predicted = overshoot.coarse.of(&ramps.coarse);
         let fine_v = overshoot.fine_v.value + overshoot.own_v(predicted.volts, direction).value;
         let overshoots = [predicted.volts + fine_v, fine_v];
@@ -102,7 +104,7 @@ pub(super) fn fine_reading(
     reading
 }
 
-/// Returns the uncertainty terms of a fine ramp in addition to that of the overshoot found on reference parts.
+/// Returns the uncertainty terms of a fine ramp, except that of the overshoot found on reference parts.
 fn uncertainty(context: &Context) -> RampUncertainty {
     RampUncertainty {
         slope_v_per_s: context.calibration.fine_v_per_s,

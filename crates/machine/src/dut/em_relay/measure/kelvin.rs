@@ -1,4 +1,5 @@
-//! Kelvin check and pin map: each pin has its force and sense contact, and both contacts are in their rest position.
+//! Kelvin check and pin map: tests that each pin has its force and sense contact, and that both contacts of the relay
+//! are in their rest position.
 //!
 //! | seen | meaning |
 //! |---|---|
@@ -19,8 +20,8 @@ use units::Span;
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];
 const COM: usize = 2;
 
-/// Returns the acts of the check. They also select the supply range: after safe outputs no range is selected and all
-/// sources are at zero.
+/// Returns the acts of the check. They also select the supply range, because no range is selected after safe outputs,
+/// and all sources are at zero then, as the selection requires.
 pub(super) fn acts(context: &Context) -> Vec<Act> {
     let (code, within) = (context.range_code(), SWITCHING_TIMEOUT);
     let read = match code {

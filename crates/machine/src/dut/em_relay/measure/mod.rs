@@ -15,8 +15,8 @@
 //! data for later stages into the plan (`plan.rs`), and may insert a stage before the planned ones.
 //!
 //! While something settles or converts, a stage prepares the next one (arming, counters, selections); the mark and the
-//! last counter readings therefore remain valid across stages. The board takes the source off 2 ms before a change of
-//! drive, selection or direction; acts that make such a change wait for it ([`INTERLOCK`]).
+//! last counter readings therefore remain valid across stages. The board switches the contact source off 2 ms before it
+//! changes drive, selection or direction; acts that make such a change wait for it ([`INTERLOCK`]).
 //!
 //! The recipe selects the strategy of each threshold ([`crate::dut::em_relay::strategy`]): the diagram shows
 //! `coarse_fine`; a search (`search/mod.rs`) replaces the ramps.
@@ -72,7 +72,7 @@ use units::{RigTime, Span};
 
 /// Time without drive after which release, bounce and swing of the armature are over.
 const OFF: Span = Span::ms(12);
-/// Delay of a change of drive, selection or direction while the source is on.
+/// Delay of the board before it changes drive, selection or direction while the source is on.
 const INTERLOCK: Span = Span::ms(2);
 
 /// Stages that confirmation measurements repeat, in the order of the test.
@@ -84,7 +84,8 @@ const SLOW: [Stage; 5] = [
     Stage::ReleaseFine(0),
 ];
 
-/// Longest remaining time of a ramp that the previous test has left running: a ramp over a new interval takes 0.3 s.
+/// Longest remaining time of a ramp that the previous test of the part has left running: a ramp over a new interval
+/// takes 0.3 s.
 const CUT_OFF: Span = Span::ms(400);
 
 /// A test under way.
@@ -124,14 +125,14 @@ impl Test {
         }
     }
 
-    /// Marks this as a further test of the same part: a ramp of the previous test may still run.
+    /// Marks this as a further test of the same part, during which a ramp of the previous test may still run.
     pub fn another(mut self, number: u8) -> Self {
         self.number = number;
         self.state.board.still_ramping = CUT_OFF;
         self
     }
 
-    /// Gives up the stage under way when its acts did not leave the board as planned.
+    /// Gives up the stage under way because its acts did not leave the board as planned.
     fn abandon(&mut self, why: Message) {
         let seen = std::mem::take(&mut self.runner.readings.trace);
         self.state.record.trace.append(seen);
@@ -194,8 +195,8 @@ impl Test {
         self.stages.push_front(Stage::TimedOperate);
     }
 
-    /// Plans the repeats of stages, once per test: of those with results inside the guard band, in a thorough test of all,
-    /// and of the fine ramps of a reference part under calibration, whose scatter shows that of operations.
+    /// Plans, once per test, the stages to repeat: those with a result inside the guard band; in a thorough test all;
+    /// under calibration also the fine ramps of a reference part, whose scatter shows the scatter of operations.
     fn add_slow_repeats(&mut self) {
         if self.slow_done || self.state.record.stopped() {
             return;
@@ -212,8 +213,8 @@ impl Test {
             })
             .map(|(stage, _)| stage)
             .collect();
-        // In the order of the test: a fine release ramp right after the timed operation would start from another flux
-        // than the ramps that taught its overshoot.
+        // Repeats follow the order of the test: a fine release ramp right after the timed operation would start from
+        // another flux than the ramps that taught its overshoot.
         for _ in 0..self.context.recipe.decision.slow_repeats {
             let round = SLOW.iter().rev().filter(|stage| again.contains(stage));
             round.for_each(|stage| self.stages.push_front(*stage));

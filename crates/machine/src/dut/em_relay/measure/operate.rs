@@ -14,11 +14,11 @@ use crate::dut::em_relay::supply::RAMP_MARGIN;
 use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
 use units::{Span, Volt};
 
-/// How far above the highest threshold of the lot the coarse release ramp starts, volts.
+/// Distance from the highest threshold of the lot up to the start of the coarse release ramp, volts.
 const RELEASE_HEADROOM: Volt = Volt(0.8);
 /// Time for flux and armature to reach equilibrium at the start level.
 pub(super) const SETTLES: Span = Span::ms(25);
-/// Longest time to poll the latch and write the ramp's reversal.
+/// Longest time to detect the latch by a poll and to write the reversal of the ramp.
 const TURNS: Span = Span::ms(10);
 /// Time after the end of a ramp up to which a contact event still counts.
 pub(super) const LATE: Span = Span::ms(25);
@@ -31,8 +31,8 @@ pub(super) fn release_start(context: &Context) -> Volt {
     Volt(above.min(test.coarse_span_v))
 }
 
-/// Ramps up until NO makes, then reverses the ramp to the start of the release ramp; the armature stays operated. The
-/// coil stage has armed the board already.
+/// Ramps up until NO makes, then reverses the ramp down to the start of the release ramp; the armature stays operated.
+/// The coil stage has already armed the board.
 pub(super) fn acts_coarse(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let (mut acts, mut board) = match board.armature {
         Armature::ReadyForRamp => (Vec::new(), board),
@@ -92,7 +92,7 @@ pub(super) fn conclude_coarse(
 ) -> Option<Stage> {
     let (board, record) = (&mut state.board, &mut state.record);
     if readings.seen.first() != Some(&true) {
-        // The part operates at nominal voltage: its threshold lies above this ramp.
+        // The part has operated at nominal voltage, so its threshold must lie above this ramp.
         record.stop(match readings.boards.last() {
             Some(board) if board.no_closed => Finding::MadeOutsideWindow,
             Some(_) => Finding::AboveCoarseRamp,
@@ -117,8 +117,8 @@ pub(super) fn conclude_coarse(
         .then_some(Stage::OperateFine(0))
 }
 
-/// Returns the time from the event until the coarse ramp is back at [`release_start`]; the ramp still rises during the
-/// poll that detects the event and the write that reverses the ramp.
+/// Returns the time from the event until the coarse ramp is back at [`release_start`]. The ramp still rises while a
+/// poll detects the event and a write reverses the ramp.
 fn turning(context: &Context, climbed: Volt) -> Span {
     let per_s = context.calibration.coarse_v_per_s.value;
     let over = climbed.0 + per_s * TURNS.as_seconds();

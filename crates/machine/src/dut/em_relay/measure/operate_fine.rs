@@ -18,7 +18,7 @@ use units::{Span, Volt};
 
 /// First step of the approach, as a fraction of the start of the fine ramp.
 pub(super) const APPROACH: f64 = 0.93;
-/// Highest voltage of the fine output that the stage leaves standing instead of taking it to 0.
+/// Highest voltage of the fine output that the stage leaves in place instead of taking it to 0.
 const LEFT: Volt = Volt(0.02);
 /// Least voltage that the level output contributes to the first step of the approach; the coarse output contributes at
 /// most the remainder.
@@ -42,7 +42,7 @@ pub(super) fn acts(
     acts.extend(make_room(context, &mut supply, falls, placed.start));
     acts.extend([
         supply.step_to(placed.start * APPROACH),
-        // During the first step the supply may still fall.
+        // The supply may still fall during the first step.
         Act::WaitSinceMark(OFF.max(Span(falls.0.saturating_sub(pace.approaches().0)))),
         set(&[
             (SourceOn, false),
@@ -86,8 +86,8 @@ pub(super) fn acts(
     (acts, left)
 }
 
-/// Returns how long after the last mark the previous ramp still falls; 0 for a rising one, which this stage reverses at
-/// once.
+/// Returns how long after the last mark the previous ramp still falls; 0 after a rising ramp, which this stage reverses
+/// at once.
 fn falling(board: BoardState) -> Span {
     match board.armature.is_released() {
         true => board.still_ramping,
@@ -95,7 +95,7 @@ fn falling(board: BoardState) -> Span {
     }
 }
 
-/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp still
+/// Lowers the coarse output to the share that the approach leaves it, and the fine output to 0. The previous ramp still
 /// falls until `falls` after the last mark.
 fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
     let (mut acts, scale) = (Vec::new(), context.scale());

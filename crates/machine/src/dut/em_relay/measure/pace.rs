@@ -41,20 +41,20 @@ impl Pace {
         self.times(2.5)
     }
 
-    /// Returns the wait from the second, smaller step to the fine ramp; the overshoot of reference parts contains the
-    /// swing that then remains.
+    /// Returns the wait from the second, smaller step to the fine ramp. The armature still swings a little afterwards;
+    /// the overshoot of reference parts contains the effect.
     pub fn settles(self) -> Span {
         self.times(4.2)
     }
 
-    /// Returns the dwell at a level that may lie above the threshold: the motion grows tenfold per 1.2 operate times,
-    /// so that the dwell resolves less than 1 mV.
+    /// Returns the dwell at a level that may lie above the threshold. The motion of the armature grows tenfold per 1.2
+    /// operate times, so that the dwell resolves less than 1 mV.
     pub fn dwells(self) -> Span {
         self.times(6.3)
     }
 
-    /// Returns the run-up of a ramp of `v_per_s`, that is, its distance before the interval that it searches. An
-    /// armature just below its threshold swings after the approach and operates up to 50 mV early.
+    /// Returns the run-up of a ramp of `v_per_s`: the distance that it covers before the interval that it searches.
+    /// Without it, an armature just below its threshold would swing after the approach and operate up to 50 mV early.
     pub fn run_up(self, v_per_s: f64) -> Volt {
         Volt(self.times(8.5).as_seconds() * v_per_s)
     }

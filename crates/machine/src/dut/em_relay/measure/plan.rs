@@ -19,11 +19,12 @@ pub struct Plan {
     release: Option<Expected>,
     /// The search by levels under way.
     pub search: Option<Search>,
-    /// Voltage at the terminal of the contact drop while no current flows.
+    /// Contact drop read while no current flows, volts at the terminal.
     pub drop_zero: Option<Volt>,
     /// NC drops of the closures read so far, free of offset.
     pub nc_drops: Vec<Volt>,
-    /// A contact that does not move at nominal voltage: the part fails for it unless the coil is the cause.
+    /// Contact that does not move at nominal voltage: the part fails for this finding unless the coil proves to be the
+    /// cause.
     pub unmoved: Option<Finding>,
 }
 
@@ -44,8 +45,8 @@ impl Plan {
         }
     }
 
-    /// Returns the interval of the next fine ramp: for a repeat that around the first indication, else the expected
-    /// one. Panics when no stage has set an expectation.
+    /// Returns the interval of the next fine ramp: around the first indication for a repeat, else the expected one.
+    /// Panics when no stage has set an expectation.
     pub fn interval(&self, record: &TestRecord, direction: Direction, scale: Scale) -> Expected {
         let repeated = record
             .ramp(direction)

@@ -15,28 +15,29 @@ use units::{Celsius, Volt};
 
 // Voltages are those of a 12 V coil in the range of factor 1; see `scale`.
 
-/// Step of the level between ARM and ramp, because the fine ramp alone takes 33 ms to move by
-/// [`WINDOW`](crate::dut::em_relay::threshold::WINDOW) and open the window. The 5 mV that this step leaves cover the comparator's tolerance. Flux and armature settle after the step.
+/// Step of the level between ARM and ramp. The fine ramp alone would take 33 ms to move by
+/// [`WINDOW`](crate::dut::em_relay::threshold::WINDOW), which opens the window; this step leaves only 5 mV of it, for the
+/// tolerance of the comparator. Flux and armature settle after the step.
 pub(super) const JUMP: Volt = Volt(0.045);
-/// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows with a delay
-/// of 6 to 9 ms and still decays from the seal.
+/// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows the ramp with
+/// a delay of 6 to 9 ms and still decays from the seal.
 const RUN_DOWN: Volt = Volt(0.085);
-/// Distance of a falling ramp after which 1 mV of the seal's effect remains: a later event belongs to the ramp.
+/// Distance of a falling ramp after which only 1 mV of the seal's effect remains: a later event belongs to the ramp.
 pub(super) const SETTLED_DOWN: Volt = Volt(0.068);
 /// Length of a ramp beyond the far end of its interval, for the scatter of the overshoot.
 const FAR_MARGIN: Volt = Volt(0.015);
-/// Half width of an interval in standard deviations of its estimate: one ramp in four hundred misses and costs a
-/// second one of 0.2 s; each further half deviation costs every part 7 ms.
+/// Half width of an interval, in standard deviations of its estimate. At this value one ramp in four hundred misses,
+/// which costs a second ramp of 0.2 s; each further half deviation would cost every part 7 ms.
 const COVERAGE: f64 = 3.0;
-/// Largest standard deviation that widens an interval: each further 10 mV costs every such part 7 ms, and a miss (one
-/// part in some dozens) costs 0.3 s.
+/// Largest standard deviation that widens an interval. Each further 10 mV would cost every such part 7 ms, whereas a
+/// miss (one part in some dozens) costs 0.3 s.
 const WIDEST_SD: Volt = Volt(0.02);
 /// Widest half width that a ramp searches; a search by halves is quicker beyond it.
 const WIDEST: Volt = Volt(0.2);
 /// Standard uncertainty of the assumed overshoot of a fine ramp, volts.
 const FINE_GUESS_SD: Volt = Volt(0.020);
-/// Standard deviation of the difference between two operations, volts; `TWO_TEMPERATURES` is that from 0.25 K between
-/// reference parts, as a share of the threshold.
+/// Standard deviation of the difference between two operations, volts. `TWO_TEMPERATURES` is the one that a temperature
+/// difference of 0.25 K between reference parts causes, as a share of the threshold.
 const TWO_OPERATIONS: Volt = Volt(0.004);
 const TWO_TEMPERATURES: f64 = 0.001;
 /// Width of the next interval, as a multiple of that of the missed one.
@@ -109,8 +110,8 @@ impl Expected {
         }
     }
 
-    /// Returns an interval of the same width around `end`, for an event after the ramp had stopped at `end`: the gate
-    /// then shows time at rest, not volts.
+    /// Returns an interval of the same width around `end`, at which the ramp stopped before the event: the gate time
+    /// after the stop shows a wait, not volts.
     pub fn around(&self, end: Volt) -> Self {
         Self {
             centre: end,
@@ -118,8 +119,9 @@ impl Expected {
         }
     }
 
-    /// Returns the next interval, three times as wide: beyond the far end when the contact has not changed. When it
-    /// changed too early the far end stays: the event lies before the near end, or the approach came too near to it.
+    /// Returns the interval after a miss, three times as wide. When the contact has not changed, the interval extends
+    /// beyond the far end. When it changed too early, the far end stays: the event lies before the near end, or the
+    /// approach came too near to it.
     pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
         let further = if changed_early {
             1.0 - WIDER
@@ -143,8 +145,8 @@ pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
     ((seen - start).abs() > span).then_some(start + Volt(span.0.copysign((seen - start).0)))
 }
 
-/// Places the fine ramp after a coarse one, and records the coarse result when the strategy accepts it as a result.
-/// Returns true when the part needs a fine ramp that the recipe has not planned.
+/// Places the fine ramp after a coarse one; records the coarse result if the strategy accepts it as a result. Returns
+/// true when the part needs a fine ramp that the recipe has not planned.
 pub(super) fn after_coarse(
     context: &Context,
     readings: &Readings,

@@ -12,7 +12,7 @@ use units::{Celsius, Ohm, Volt};
 pub struct Ramp {
     /// Results of the part at the end of its coarse ramp, including the indication of that ramp.
     pub coarse: CoarseResults,
-    /// Indicated voltage of the fine ramp.
+    /// Indicated voltage of the fine ramp; `None` before it.
     pub fine: Option<Volt>,
 }
 

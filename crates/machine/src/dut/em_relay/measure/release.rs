@@ -21,23 +21,23 @@ use units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
 pub const SEAL: f64 = 0.95;
-/// Last part of a ramp, in refresh intervals, in which the output may have stopped already: an event there gives no
-/// estimate.
+/// Last part of a ramp, in refresh intervals of the output. The output may have stopped already during this part, so an
+/// event there gives no estimate.
 const LAST_REFRESHES: f64 = 1.5;
 /// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
-/// Time for the seal's flux to decay to a few per cent before a fine ramp; the model of the coarse overshoot includes
-/// what remains after [`SETTLES`].
+/// Time for the seal's flux to decay to a few per cent before a fine ramp. The model of the coarse overshoot includes
+/// the flux that remains after [`SETTLES`].
 const FINE_SETTLES: Span = Span::ms(35);
 /// Time after the end of a ramp up to which a break still counts.
 const LATE: Span = Span::ms(12);
 
-/// Seals the armature, steps to the start of the falling ramp and arms. An operated armature does not release first:
-/// its seal lasts until the running ramp has ended.
+/// Seals the armature, steps to the start of the falling ramp and arms the board. An operated armature is not released
+/// first; its seal lasts until the running ramp has ended.
 fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
-    // The source is off: the ramp breaks a contact whose resistance other stages have read.
+    // The source is off, so that the ramp breaks the contact without load; other stages have read its resistance.
     let falling = [
         (SourceOn, false),
         (SourceReverse, false),
@@ -133,8 +133,8 @@ pub(super) fn conclude_coarse(
         gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
     let (plan, record) = (&mut state.plan, &mut state.record);
     let Some(gate) = gate else {
-        // The threshold lies below the coarse ramp, far from the one that the lot expects: a wide search must place the
-        // fine ramp.
+        // The threshold lies below the coarse ramp, far from the threshold that the lot expects, so a wide search must
+        // place the fine ramp.
         let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
         plan.expect(Direction::Falling, expected);
         plan.search = Some(Search::placing(context, record, Direction::Falling));
@@ -161,7 +161,7 @@ pub(super) fn acts_fine(
     let mut acts = Vec::new();
     if board.supply.fine() < way {
         let (fine, takes) = board.supply.ramp_fine(way);
-        // A rising ramp runs on, a falling one reverses.
+        // A rising ramp continues, a falling one reverses.
         let rises = match board.armature == Armature::Operated {
             true => board.still_ramping,
             false => Span(0),

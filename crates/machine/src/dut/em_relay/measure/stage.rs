@@ -24,10 +24,10 @@ pub enum Stage {
     OperateCoarse,
     /// Fine ramp from just below the coarse estimate; a later attempt searches a wider interval.
     OperateFine(u8),
-    /// Step to nominal voltage: counter gate 0 times the operation, gate 1 the bounce; then the station measures the
+    /// Step to nominal voltage: counter gate 0 times the operation, gate 1 the bounce; then the stage measures the
     /// resistance of the closed NO contact.
     TimedOperate,
-    /// Drive off: counter gate 0 times the release, gate 1 the bounce; then the station measures the resistance of the
+    /// Drive off: counter gate 0 times the release, gate 1 the bounce; then the stage measures the resistance of the
     /// closed NC contact.
     TimedRelease,
     /// Coarse falling ramp from a sealed armature.
@@ -146,7 +146,7 @@ impl Stage {
         }
     }
 
-    /// Returns the key under which the record sums up the stage's time.
+    /// Returns the key under which the record adds up the time of the stage.
     pub fn measures(self) -> &'static str {
         match self {
             Self::Kelvin => "kelvin",

@@ -20,18 +20,18 @@ use units::{Span, Volt};
 
 /// Slowest operation or release that the stage waits for.
 pub const LONGEST_OPERATION: Span = Span::ms(60);
-/// Time after the latch during which gate 1 counts bounce: the board then closes the window.
+/// Time after the latch during which gate 1 counts bounce; the board closes the window at its end.
 pub const BOUNCE_WINDOW: Span = Span::ms(20);
 /// Time from the latch until the window has closed for certain.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
-/// Greatest difference between the delays of both gates, in counts; nominally, gate 1 is open whenever gate 0 is.
+/// Greatest difference between the delays of the two gates, in counts. Nominally gate 1 is open whenever gate 0 is.
 const GATE_SKEW: u32 = 4;
 /// Time from the latch until the source drives its current: bounce ends within 6 ms (twice the specified class), and
 /// the source requires 5 ms of closed contact.
 const SOURCE_FLOWS: Span = Span::ms(11);
 
-/// Operates at nominal voltage. Reads the counters after ARM unless the NC stage has read them: a window that an
-/// interrupted test left open closes at ARM.
+/// Operates the relay at nominal voltage. Reads the counters after ARM unless the NC stage has read them, because ARM
+/// closes a window that an interrupted test left open.
 pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let mut acts = drive_off(board.armature);
@@ -65,9 +65,9 @@ pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, B
     (acts, left)
 }
 
-/// Takes the drive off and times NC. The counter readings of a timed operation remain valid, because the latch shuts
-/// both gates until ARM. A release into the diode operates the relay anew, since the board selects the diode only
-/// without coil current.
+/// Takes the drive off and times the make of NC. The counter readings of a timed operation remain valid, because the
+/// latch shuts both gates until ARM. A release into the diode first operates the relay anew, since the board selects
+/// the diode only without coil current.
 pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let diode = select_diode(context, true);
     let counted = board.armature == Armature::Operated && diode.is_none();
@@ -93,7 +93,7 @@ pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, B
     (acts, board)
 }
 
-/// Operates the armature at nominal voltage without contact load: the test does not read this closure.
+/// Operates the armature at nominal voltage without contact load, because the test does not read this closure.
 fn operated(
     context: &Context,
     mut board: BoardState,
@@ -113,7 +113,7 @@ fn operated(
     (acts, board)
 }
 
-// ARM rises in the same write as the selection: it clears window and latch, so that the selection starts neither.
+// ARM rises in the same write as the selection: it clears window and latch, so that the selection triggers neither.
 
 /// Waits for the contact event and marks it; bounce, window and source settle after that mark.
 fn until_made() -> [Act; 2] {
@@ -126,9 +126,9 @@ fn until_made() -> [Act; 2] {
     ]
 }
 
-/// Reads the gates after the window has closed, then the forward drop. The source is on before the contact makes and
-/// drives current through it after 5 ms of closure, in the direction of the contact monitor, so that gate 1 counts no
-/// opening.
+/// Reads the gates after the window has closed, then the drop with the source forward. The source is switched on before
+/// the contact makes; it drives current only after 5 ms of closure, in the direction of the contact monitor, so that
+/// gate 1 counts no opening.
 fn drop_of_closure(context: &Context) -> [Act; 6] {
     [
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),
@@ -155,7 +155,7 @@ fn time_and_bounce(
     let gate0 = counts(before[0].count, after[0].count);
     let gate1 = counts(before[1].count, after[1].count);
     let longest = (LONGEST_OPERATION + WINDOW_AFTER_LATCH).as_seconds() * context.clock().hz;
-    // No contact moves within one count: a gate without counts means that the counter has restarted.
+    // No contact moves within one count, so a gate without counts means that the counter has restarted.
     let still = gate0 == 0;
     if still || f64::from(gate0.max(gate1)) > longest || gate1 + GATE_SKEW < gate0 {
         let detail = format!("{gate0} and {gate1} counts");
@@ -208,8 +208,8 @@ pub(super) fn conclude_operate(
     None
 }
 
-/// Concludes a stage in which the contact did not close: the relay is late, or its contact does not move. The coil may
-/// be the cause, so the test measures the coil before it judges the part.
+/// Concludes a timed operation in which NO did not make in time: the relay is late, or a contact does not move. For a
+/// contact that does not move, returns the coil stage: the test measures the coil first, which may be the cause.
 fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
     let TestState { plan, record, .. } = state;
     plan.unmoved = match readings.boards.last() {

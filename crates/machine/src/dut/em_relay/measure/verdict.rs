@@ -4,7 +4,7 @@ use super::{Context, TestRecord};
 use crate::dut::em_relay::Parameter;
 use crate::gauge::Judgement;
 
-/// Returns each result against its limit, then the limits proven without a value.
+/// Returns the judgement of each result against its limit, then those of limits that were proven without a value.
 pub(super) fn judged(context: &Context, record: &TestRecord) -> Vec<(Parameter, Judgement)> {
     let mut judged = record.judged(&context.recipe, Parameter::ALL);
     let unmeasured = |(parameter, _): &(Parameter, Judgement)| record.attempts(*parameter) == 0;

@@ -7,9 +7,10 @@
 //! | scatter of closures | closures of one part's NC contact ([`closure`]) |
 //! | temperature of part minus track | operate voltages of the reference parts of a calibration ([`super::reference_part`]) |
 //!
-//! From the alarm on, budgets use the observed value; parts judged before keep the promised one. The five reference parts
-//! of a calibration disprove only a gross error of the temperature. So every calibration pools what they show with the
-//! promise, which counts as much as its own uncertainty in `rig.toml` allows ([`Promises::part_minus_track_k`]).
+//! From the alarm on, budgets use the observed value; parts judged before keep the promised one. The five reference
+//! parts of a calibration can disprove only a gross error of the temperature. Every calibration therefore pools what
+//! they show with the promise, weighted by the uncertainty that `rig.toml` states for it
+//! ([`Promises::part_minus_track_k`]).
 
 mod closure;
 mod operation;
@@ -21,13 +22,13 @@ use crate::gauge::evidence::{Residuals, freedom_of};
 use crate::gauge::{Deviation, Evidence};
 use std::sync::Arc;
 
-/// Greatest share of the lots in which a promise that holds raises its alarm.
+/// Greatest rate of false alarms: the share of the lots in which a promise that holds raises its alarm.
 const FALSE_ALARMS: f64 = 5e-5;
 
 /// Promises and the evidence against them.
 #[derive(Debug, Clone)]
 pub struct Promises {
-    /// One for each promise, by its index.
+    /// One entry for each promise, at the index of the promise.
     watched: Vec<Watched>,
     /// Broken promises that the station has not announced yet.
     new: Vec<Promise>,
@@ -44,7 +45,7 @@ struct Watched {
 }
 
 impl Promises {
-    /// Makes the promises of rig and recipe; those that a stored calibration has disproved are broken.
+    /// Makes the promises of rig and recipe; marks those as broken that a stored calibration has disproved.
     pub fn new(context: &Context) -> Self {
         let stored = &context.calibration.broken;
         let watched = Promise::ALL.iter().map(|&promise| {
@@ -54,7 +55,7 @@ impl Promises {
                 promise,
                 promised,
                 evidence: Evidence::default(),
-                // Not broken when `rig.toml` by now promises as large a value itself.
+                // A promise is not broken if `rig.toml` has since been changed to promise at least the value in use.
                 broken: stored.find(|it| it.used > promised).copied(),
             }
         });
@@ -84,16 +85,16 @@ impl Promises {
         broken
     }
 
-    /// Returns the difference between part and track, kelvin: the promise, known to `u_pct` percent, pooled with the
-    /// reference parts.
+    /// Returns the difference between part and track, kelvin: the promise, whose relative uncertainty is `u_pct`
+    /// percent, pooled with what the reference parts show.
     pub fn part_minus_track_k(&self, u_pct: f64) -> Deviation {
         let watched = &self.watched[Promise::PartMinusTrack.index()];
         let pooled = watched.evidence.pooled(freedom_of(u_pct));
         pooled.times(watched.promised)
     }
 
-    /// Makes the budgets of `context` use the larger of the promised and the observed values. The temperature of the
-    /// parts is in its calibration.
+    /// Makes the budgets of `context` use the larger of the promised and the observed values. The calibration of
+    /// `context` already contains the temperature of the parts.
     pub fn apply(&self, context: &mut Context) {
         let accuracy = &mut context.accuracy;
         for it in &self.watched {
@@ -110,7 +111,7 @@ impl Promises {
         }
     }
 
-    /// Discards the evidence, so that the promises hold again: a new calibration begins.
+    /// Discards the evidence because a new calibration begins; the promises count as holding again.
     pub fn restart(&mut self) {
         self.new.clear();
         for it in &mut self.watched {

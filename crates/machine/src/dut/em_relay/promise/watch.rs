@@ -9,14 +9,14 @@ use crate::gauge::evidence::Residuals;
 use units::Volt;
 
 impl Promises {
-    /// Observes the scatter of operations by the repeated ramps of any part.
+    /// Adds the scatter of repeated ramps, of any part, to the evidence on the scatter of operations.
     pub fn watch_repeats<T>(&mut self, record: &TestRecord<T>, scale: Scale) {
         let residuals: Vec<Residuals> =
             operation::of_repeats(record, self.scatter(scale)).collect();
         self.observe(Promise::OperationScatter, residuals);
     }
 
-    /// Observes the scatter of closures of a good part.
+    /// Adds the closures of a good part to the evidence on the scatter of closures.
     pub fn watch_closures(&mut self, observed: &Observed) {
         let promised_pct = self.promised(Promise::ClosureScatter);
         let closures = closure::of_closures(&observed.nc_mohm, promised_pct);

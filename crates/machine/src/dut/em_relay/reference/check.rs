@@ -8,11 +8,11 @@ use crate::dut::em_relay::points::AnalogIn;
 use crate::dut::em_relay::readings::{CoilScan, Readings};
 use units::Volt;
 
-/// Largest relative difference between the supply and the coil voltage of the reference; the next range has twice the
-/// voltage.
+/// Largest relative difference between the supply voltage and the coil voltage of the reference. A wrong range shows,
+/// because the next range has twice the voltage.
 const SAME_SUPPLY: f64 = 0.1;
 
-/// Fails when the board is in another range than the one selected: nothing was driven then.
+/// Fails when the board is in another range than the one selected; the board has then driven nothing.
 pub(super) fn check_range(context: &Context, readings: &Readings) -> Result<(), ReferenceFault> {
     let read_back = readings.boards.last().and_then(|board| board.range);
     match context.range_mismatch(read_back) {
@@ -21,8 +21,8 @@ pub(super) fn check_range(context: &Context, readings: &Readings) -> Result<(), 
     }
 }
 
-/// Fails when the supply voltage, which reads the same in every range, differs from the one that the coil channel
-/// reads.
+/// Fails when the reading of the supply voltage, which is independent of the range, differs from that of the coil
+/// channel.
 pub(super) fn check_supply(
     context: &Context,
     scans: &[CoilScan],

@@ -6,13 +6,13 @@ use crate::dut::em_relay::measure::Context;
 use std::ops::Range;
 use units::Volt;
 
-/// Higher supply level at the reference coil, in the range of factor 1; at 400 ohm the fine channels can read it.
+/// Higher supply level at the reference coil, in the range of factor 1; the fine channels can read it at 400 ohm.
 const HIGH: Volt = Volt(5.7);
 /// Lower supply level at the reference coil, as a share of [`HIGH`].
 const LOW: f64 = 1.5 / 5.7;
 /// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of [`HIGH`].
 const SLOPE_MARGIN: f64 = 0.3 / 5.7;
-/// Share of the limits of a supply range that a level uses.
+/// Share of a supply range's limits that a level may use.
 const USED: f64 = 0.9;
 /// Number of scans at a level where voltage or current is a small part of the range of its channel.
 const CURRENT_SCANS: usize = 4 * SCANS;
@@ -24,7 +24,7 @@ const ALIKE: f64 = 0.1;
 pub(super) struct Levels {
     pub(super) low: Volt,
     pub(super) high: Volt,
-    /// Level at which the current channel of the recipe reads the reference coil best; none where that is `high`.
+    /// Level at which the current channel of the recipe reads the reference coil best; `None` if this is `high`.
     pub(super) current: Option<Volt>,
 }
 

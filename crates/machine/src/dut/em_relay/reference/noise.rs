@@ -1,4 +1,4 @@
-//! Noise of the analog inputs, from the conversions of the calibration: its levels and drops stay constant.
+//! Noise of the analog inputs, from the conversions of a calibration that read constant levels and drops.
 
 use super::DROPS;
 use super::levels::Levels;
@@ -19,8 +19,8 @@ const CHANNELS: [fn(&CoilScan) -> &Option<Sample>; 5] = [
     |scan| &scan.reference,
 ];
 
-/// Returns the residuals of all conversions of a constant voltage, against the promised noise in steps of the converter;
-/// none for an incomplete calibration.
+/// Returns the residuals of all conversions of a constant voltage, against the promised noise in steps of the
+/// converter; empty for an incomplete calibration.
 pub fn noise(context: &Context, readings: &ByPoint, noise_lsb: f64) -> Vec<Residuals> {
     let readings = Readings::of(readings, &context.points, None);
     let Ok(taken) = Taken::of(Levels::of(context), &readings) else {

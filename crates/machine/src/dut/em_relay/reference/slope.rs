@@ -9,8 +9,8 @@ use crate::gauge::Factor;
 use crate::rig::sample::Quality;
 use units::Volt;
 
-/// Returns the slope of the fine ramp by least squares against the arrival of the replies; their constant delay after
-/// the conversion does not tilt the line.
+/// Returns the slope of the fine ramp by least squares against the arrival times of the replies; the constant delay of
+/// a reply after its conversion does not change the slope.
 pub(super) fn slope(
     context: &Context,
     (levels, scans): (Levels, &[CoilScan]),

@@ -1,9 +1,10 @@
 //! Temperature of the reference parts: their scatter about the track, and the error of its thermometer.
 //!
-//! The operate voltage shows the temperature of a coil most clearly: 4.6 mV for the 0.15 K of the shipped `rig.toml`,
-//! beside 2.2 mV of certificate and operation. Release voltage and coil resistance of the same part show the same
-//! temperature again, under more noise, so they add no degree of freedom. What all parts have in common is lost in the
-//! overshoot. The coil resistance shows that: mean heating, thermometer, reference resistor.
+//! The operate voltage shows the temperature of a coil most clearly: the 0.15 K of the shipped `rig.toml` change it by
+//! 4.6 mV, whereas certificate and operation are uncertain by 2.2 mV. Release voltage and coil resistance of the same
+//! part show the same temperature again, under more noise, so they add no degree of freedom. An error that all parts
+//! have in common disappears in the overshoot, but shows in the coil resistance: mean heating, thermometer, reference
+//! resistor.
 
 use super::{ReferenceRun, Shift};
 use crate::dut::accuracy::AccuracySettings;
@@ -20,8 +21,8 @@ use units::Celsius;
 const ABOUT: Celsius = Celsius(23.0);
 
 impl ReferenceRun {
-    /// Returns the residuals of the operate voltages against the temperature difference that `accuracy` promises; `None`
-    /// below two parts.
+    /// Returns the residuals of the operate voltages against the temperature difference that `accuracy` promises;
+    /// `None` for fewer than two parts.
     pub fn temperatures(
         &self,
         parts: &[ReferencePart],
@@ -38,8 +39,8 @@ impl ReferenceRun {
         Residuals::about_mean(&volts, own, others)
     }
 
-    /// Returns what the parts show of temperatures; the temperature of one part differs from that of the track by
-    /// `part_minus_track_k`.
+    /// Returns the temperature of parts as the reference parts show it; `part_minus_track_k` is the difference of one
+    /// part from the track.
     pub fn temperature(&self, part_minus_track_k: Deviation) -> Temperature {
         let n = self.shifts.len() as f64;
         let coils = || self.shifts.iter().map(|it| it.coil);
@@ -52,15 +53,15 @@ impl ReferenceRun {
     }
 }
 
-/// Returns the fine overshoot of a part beyond the mean `fine_v` of all, when its coarse one is `coarse` times the mean;
-/// 0 without a coarse ramp.
+/// Returns the fine overshoot of a part beyond the mean `fine_v` of all parts; `coarse` is its coarse overshoot as a
+/// multiple of the mean. 0 without a coarse ramp.
 fn overshoot_of_part(fine_v: f64, coarse: f64) -> f64 {
     let further = fine_v * (coarse - 1.0);
     if further.is_finite() { further } else { 0.0 }
 }
 
-/// Returns the promised variances of the shift of one reference part, mean over `parts`, V²: that of its temperature,
-/// and that of certificate and operation.
+/// Returns the promised variances of the shift of one reference part, each as the mean over `parts`, V²: that of its
+/// temperature, and that of certificate and operation.
 pub(super) fn variances(
     parts: &[ReferencePart],
     direction: Direction,

@@ -14,7 +14,8 @@ pub(super) fn level(search: &Search) -> Volt {
     (search.untouched + search.changed) / 2.0
 }
 
-/// Returns the middle of the remaining half, or the threshold.
+/// Returns the middle of the remaining half; after the last trial the threshold, or ramps unless trials have confirmed
+/// both ends.
 pub(super) fn next(search: &Search) -> Next {
     if search.trials < TRIALS {
         return Next::Try(level(search));

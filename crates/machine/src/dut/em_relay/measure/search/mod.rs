@@ -3,8 +3,8 @@
 //! A trial is a list of acts that ends with a reading of the contacts, and a conclusion: the threshold or the next
 //! level. The threshold lies between `untouched` and `changed`.
 //!
-//! The dwell at a level limits the resolution: the motion grows tenfold per 5.7 ms, so that 20 ms resolve 16 mV, 30 ms
-//! less than 1 mV. A trial from rest approaches in two steps, as fine ramps do.
+//! The dwell at a level limits the resolution: the motion of the armature grows tenfold per 5.7 ms, so that 20 ms
+//! resolve 16 mV, 30 ms less than 1 mV. A trial from rest approaches in two steps, as fine ramps do.
 
 mod bisection;
 mod outcome;
@@ -26,7 +26,7 @@ use units::{Celsius, Span, Volt};
 const REACH: f64 = 4.5;
 /// Half width for a search that only places a ramp, in standard deviations of the lot.
 const WIDE: f64 = 6.0;
-/// Largest and smallest overshoot of a coarse ramp, as multiples of the overshoot of usual parts; a dragging hinge
+/// Largest and smallest overshoot of a coarse ramp, as multiples of the overshoot of usual parts. A dragging hinge
 /// causes the largest.
 const MOST_OVERSHOOT: f64 = 3.5;
 const LEAST_OVERSHOOT: f64 = 0.3;
@@ -42,9 +42,9 @@ pub struct Search {
     pub strategy: Strategy,
     /// Direction of the threshold.
     pub direction: Direction,
-    /// Level at which the contact has not changed.
+    /// Level nearest to the threshold at which the contact has not changed.
     pub untouched: Volt,
-    /// Level at which the contact has changed; before any trial the end of the interval.
+    /// Level nearest to the threshold at which the contact has changed; before any trial the end of the interval.
     pub changed: Volt,
     /// Level of the trial under way.
     pub at: Volt,
@@ -151,7 +151,8 @@ impl Search {
         }
     }
 
-    /// Returns true when the next trial starts from rest or from a sealed armature; a staircase continues instead.
+    /// Returns true when the next trial starts from rest or from a sealed armature; false for a staircase, which
+    /// continues from its last level.
     fn begins_anew(&self) -> bool {
         self.trials == 0 || self.strategy != Strategy::Staircase
     }
@@ -173,7 +174,7 @@ impl Search {
     }
 }
 
-/// Returns the interval of the threshold, from the coarse indication less the largest and the smallest overshoot;
+/// Returns the interval in which the threshold lies: the coarse indication less the largest and the smallest overshoot.
 /// `None` without a coarse ramp.
 fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
     let indicated = record.ramp(direction)?.coarse.indicated;

@@ -78,7 +78,7 @@ fn placed(
     })
 }
 
-/// Returns the interval in which a fine ramp shows a threshold found by levels.
+/// Returns the interval in which a fine ramp will indicate a threshold found by levels.
 fn near(context: &Context, direction: Direction, volts: Volt, step: Volt) -> Expected {
     Expected::new(
         volts + Volt(context.overshoot(direction).fine_v.value),

@@ -8,8 +8,8 @@ use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::Budget;
 use units::{Celsius, Volt};
 
-/// Share of the level by which a single step operates a relay below its quasi-static threshold: the armature swings
-/// beyond its balance.
+/// Share of the level by which a single step operates a relay below its quasi-static threshold, because the armature
+/// swings beyond its equilibrium.
 const SWING_SHARE: f64 = 0.0035;
 
 /// Returns the level of the pulse; where the recipe sets no limit, the expected threshold takes its place.

@@ -64,8 +64,8 @@ fn from_rest(board: BoardState, pace: Pace, at: Volt) -> (Vec<Act>, BoardState) 
     (acts, driven(board, supply))
 }
 
-/// Operates the armature, seals it at 0.95 of nominal, then steps to the near end of the interval. Takes the coarse
-/// output down first when `ramped`.
+/// Operates the armature, seals it at 0.95 of nominal, then steps to the near end of the interval. If `ramped`, first
+/// takes the coarse output down.
 fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>, BoardState) {
     let (mut supply, test) = (board.supply, &context.relay.test);
     let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
@@ -75,7 +75,7 @@ fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>,
         acts.extend([coarse, Act::Wait(takes)]);
     }
     acts.extend([
-        // A ramp that still falls would seal at more than nominal voltage.
+        // While a ramp still falls, the seal would exceed nominal voltage.
         Act::Wait(board.still_ramping),
         supply.step_to(Volt(SEAL * context.relay.part.nominal_v)),
         set(&[
@@ -87,14 +87,14 @@ fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>,
             (CoilDrive, true),
         ]),
         Act::Wait(INTERLOCK + SEALS),
-        // The flux of a sealed armature falls slowly, so the last step is short.
+        // The flux of a sealed armature falls slowly, so the step to the level comes last and is short.
         supply.step_to(near),
         Act::Wait(SEALS),
     ]);
     (acts, driven(board, supply))
 }
 
-/// Returns the board with the drive on and the armature unknown until the trial reads the contacts.
+/// Returns the board with the drive on; the state of the armature is unknown until the trial reads the contacts.
 fn driven(board: BoardState, supply: Supply) -> BoardState {
     BoardState {
         supply,
