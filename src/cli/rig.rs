@@ -15,7 +15,7 @@ pub enum PaceArg {
     Real,
 }
 
-/// The rig of a command.
+/// Options that choose the rig of a command: the simulated one, or a real one at serial ports.
 #[derive(Debug, Clone, clap::Args)]
 pub struct RigArgs {
     /// On the simulated rig

@@ -10,7 +10,7 @@ use serde_json::json;
 use std::path::Path;
 use texts::Message;
 
-/// Decision about a lot that an order makes, with its reason.
+/// Decision that an order of an operator makes about a lot, with its reason.
 #[derive(Debug, Clone, Copy)]
 pub struct AboutLot<'a> {
     /// Hold, release, close or reopen.

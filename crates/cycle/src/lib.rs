@@ -259,8 +259,8 @@ impl Cycle {
         }
     }
 
-    /// Stores the answers that have arrived in the process image, reports modules that have restarted, and collects the
-    /// readings of the code reader.
+    /// Moves the answers that have arrived from the lines into the process image, raises an alarm for each module that has
+    /// restarted, and collects the readings of the code reader.
     fn scan(&mut self, now: RigTime) {
         assert!(now >= self.turned_at, "rig time ran backwards");
         self.turned_at = now;

@@ -20,7 +20,7 @@ pub(super) struct CompareArgs {
     /// One JSON object
     #[arg(long, conflicts_with = "page")]
     json: bool,
-    /// A page with the histograms over one another instead of a table; see --out and --lang
+    /// An HTML page instead of text, with the histograms of all lots in one chart; see --out and --lang
     #[arg(long)]
     page: bool,
     #[command(flatten)]

@@ -62,7 +62,7 @@ pub(super) struct PartArgs {
 /// A range of values of one parameter.
 #[derive(Debug, Args)]
 pub(super) struct RangeArgs {
-    /// Only parts with a judged value of this parameter
+    /// Only parts with a number for this parameter, from its last attempt, that is not void
     #[arg(long, value_name = "KEY")]
     pub param: Option<String>,
     /// Least value of the parameter

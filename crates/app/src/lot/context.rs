@@ -25,7 +25,8 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// Returns the state in which the machine begins between lots; `None` for every other purpose.
+    /// Returns the state in which the machine begins a run with the purpose [`Self::BetweenLots`]; `None` for any other
+    /// purpose.
     pub const fn rest_state(self) -> Option<State> {
         match self {
             Self::BetweenLots(state) => Some(state),

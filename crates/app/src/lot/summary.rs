@@ -98,7 +98,8 @@ impl Summary {
 pub struct BrokenPromise {
     /// Number of parts of the lot that were judged with the promised value.
     pub after_parts: u64,
-    /// The promise, its promised and its observed value, and the value that budgets of later parts use.
+    /// The disproved standard deviation: as `rig.toml` or the recipe states it, as observed, and as the uncertainty budgets
+    /// of later parts use it.
     #[serde(flatten)]
     pub broken: Broken,
 }

@@ -171,7 +171,7 @@ impl Mechanism {
         self.waiting.extend_from_slice(movements);
     }
 
-    /// Forgets motions and positions, because every output has gone safe.
+    /// Forgets motions and positions, because all outputs are made safe.
     pub fn forget(&mut self) {
         self.underway.clear();
         self.waiting.clear();

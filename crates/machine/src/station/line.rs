@@ -84,7 +84,8 @@ impl Line {
         assert!(self.dark.len() <= beams, "a dark beam without a bin");
     }
 
-    /// Forgets every position after the outputs have gone safe.
+    /// Forgets the positions of all actuators and drops all motions, under way or queued, because the outputs are made
+    /// safe; homing must follow.
     pub fn cut_off(&mut self) {
         self.feeder.cut_off(&self.ledger);
         self.stepwise.clear();

@@ -4,11 +4,11 @@
 //! |---|---|---|
 //! | feed on its way | strokes, each with its own time-out and one more try | 6 s |
 //! | clamping, probing, gripping, unclamping | strokes | 6 s |
-//! | testing | the measuring line; confirmation measurements take less than 10 s | 60 s and the conditioning |
-//! | judged | the sorter over the nest, fingers open, z down | 15 s |
+//! | testing | all measurements, of which those that confirm take less than 10 s | 60 s plus the longest conditioning |
+//! | judged, still clamped | the sorter over the nest, fingers open, z down | 15 s |
 //! | lifting | z up and the nest empty | 2.5 s |
 //! | sorter on its way | strokes and the axis | 8 s |
-//! | over the bin | rows of the part on the disk, beam read, the part before landed | 15 s |
+//! | over the bin | rows of the part on the disk, a reading of the beam, the landing of the previous part | 15 s |
 //!
 //! The other steps have no timeout: they wait for a neighbour that has one, or for parts. A full bin stops the clock of
 //! the step over the bin. In maintenance, and while an unattended run waits for its history, no timeout applies.

@@ -41,7 +41,8 @@ impl Sweep {
         }
     }
 
-    /// Returns how often the script presses the stop for each instant; the reaction to the last press alone counts.
+    /// Returns the number of presses of the emergency stop that the script makes for one instant. Only the last press falls
+    /// on that instant, and only the reaction to it counts; an earlier press brings the rig into homing.
     pub const fn presses(self) -> usize {
         match self {
             Self::Cycle => 1,

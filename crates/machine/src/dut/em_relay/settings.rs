@@ -20,7 +20,7 @@ pub struct ReferenceSettings {
     pub voltage_v: f64,
     /// Tolerance of `voltage_v`, %.
     pub voltage_tolerance_pct: f64,
-    /// Length of the gate pulse that ARM triggers on the contact reference, ms.
+    /// Time for which the output `arm` opens both counter gates while the contact reference is selected, ms.
     pub gate_pulse_ms: f64,
     /// Clock of the gated counters, Hz.
     pub counter_clock_hz: f64,
