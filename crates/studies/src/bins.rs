@@ -17,9 +17,14 @@ const GOOD_PARTS_OF_A_LOT: usize = 100;
 pub fn bin_of(defect: &str) -> Option<&'static str> {
     Some(match defect {
         "open_coil" | "shorted_turns" | "wrong_coil" => "coil",
+        "open" | "short" | "wrong_value" => "coil",
         "weak_spring" | "stiff_spring" => "voltage",
         "slow" | "bouncing" => "time",
         "stuck_nc" | "stuck_no" | "high_contact" | "unstable_contact" => "contact",
+        "open_led" | "shorted_led" | "wrong_input_current" | "aged_led" => "input",
+        "shorted_output" | "high_drop" | "thermal" | "stuck_on" => "output",
+        "slow_turn_on" | "slow_turn_off" => "time",
+        "leaky_junction" => "leakage",
         "turned" | "missing_pin" => "retest",
         _ => return None,
     })

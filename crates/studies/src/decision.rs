@@ -18,6 +18,7 @@ use super::order::Order;
 use super::output::Report;
 use super::risk::DecisionRisk;
 use super::variant::Variant;
+use machine::dut::Characteristic;
 use machine::dut::em_relay::Parameter;
 use quality::Spread;
 use quality::spread::median;
@@ -40,7 +41,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let (rows, risks): (Vec<Figure>, Vec<Option<(f64, f64)>>) = order
         .admitted()
         .iter()
-        .map(|(parameter, limits)| predicted(*parameter, limits, &lots))
+        .map(|(characteristic, limits)| predicted(*characteristic, limits, &lots))
         .unzip();
     let about = order.about();
     let title = format!("rejects of good parts that the rule predicts: {about}");
@@ -56,19 +57,19 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("decision", about, groups, chart))
 }
 
-/// Predicts the false rejects and accepts of one parameter by the decision rule. Returns a row in parts per million
+/// Predicts the false rejects and accepts of one characteristic by the decision rule. Returns a row in parts per million
 /// with and without guard band, and the probabilities of a false accept and of a false reject with guard band.
 fn predicted(
-    parameter: Parameter,
+    characteristic: Characteristic,
     limits: &RangeInclusive<f64>,
     lots: &[Lot],
 ) -> (Figure, Option<(f64, f64)>) {
-    let readings = readings(parameter, lots);
+    let readings = readings(characteristic, lots);
     let chance = chance(&readings);
     let [guarded, unguarded] = [1.0, 0.0].map(|guard| chance?.of(limits, guard));
     let accept = |risk: Option<(f64, f64)>| risk.map(|it| it.0 * PPM);
     let reject = |risk: Option<(f64, f64)>| risk.map(|it| it.1 * PPM);
-    let (name, n) = (parameter.name(), readings.len() as u64);
+    let (name, n) = (characteristic.key(), readings.len() as u64);
     let row = Figure::new(name, n, reject(guarded), "ppm")
         .with("false_accept", accept(guarded))
         .with("unguarded_reject", reject(unguarded))
@@ -76,10 +77,10 @@ fn predicted(
     (row, guarded)
 }
 
-fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
+fn readings(characteristic: impl Into<Characteristic> + Copy, lots: &[Lot]) -> Vec<Reading> {
     lots.iter()
         .flat_map(Lot::good)
-        .filter_map(|part| part.reading(parameter))
+        .filter_map(|part| part.reading(characteristic))
         .collect()
 }
 
@@ -107,7 +108,8 @@ fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
 /// Runs lots whose mean operate voltage lies one standard deviation inside its limit.
 fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
     let admitted = order.admitted();
-    let known = |(parameter, _): &&(Parameter, _)| *parameter == Parameter::OperateVoltage;
+    let operate = Characteristic::from(Parameter::OperateVoltage);
+    let known = |(characteristic, _): &&(Characteristic, _)| *characteristic == operate;
     let limits = admitted.iter().find(known).map(|(_, limits)| limits);
     let usual = chance(&readings(Parameter::OperateVoltage, lots));
     let (Some(limits), Some(usual)) = (limits.filter(|it| it.end().is_finite()), usual) else {

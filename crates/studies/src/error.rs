@@ -1,36 +1,42 @@
-//! Errors of one parameter against the truth, over good parts.
+//! Errors of one characteristic against the truth, over good parts.
 //!
-//! An error is in percent of the true value for a parameter in ohm, in mV for a parameter in volt, and in the unit of
-//! the parameter otherwise. The uncertainty U (k = 2) of a value covers the truth when `|value - truth| <= U`; a value
+//! An error is in the unit that the kind of part states for it ([`ErrorUnit`]). The uncertainty U (k = 2) of a value covers the truth when `|value - truth| <= U`; a value
 //! without an uncertainty does not cover it.
 
 use super::figure::percent;
 use super::lot::{Lot, Part, Reading};
-use machine::dut::em_relay::Parameter;
+use machine::dut::Characteristic;
+use machine::dut::characteristic::ErrorUnit;
 use quality::Spread;
 use quality::spread::median;
-use units::Unit;
 
-/// Returns the unit of the error of a parameter.
-pub fn unit(parameter: Parameter) -> &'static str {
-    match parameter.facts().definition.unit {
-        Unit::Ohm => "%",
-        Unit::Volt => "mV",
-        unit => unit.symbol(),
+/// Returns how errors of a characteristic are stated.
+fn stated(characteristic: Characteristic) -> ErrorUnit {
+    // The unit does not depend on the rated voltage.
+    let accepted = characteristic.accepted_error(Some(1.0));
+    accepted.map_or(ErrorUnit::Own, |it| it.unit)
+}
+
+/// Returns the unit of the error of a characteristic.
+pub fn unit(characteristic: Characteristic) -> &'static str {
+    match stated(characteristic) {
+        ErrorUnit::Percent => "%",
+        ErrorUnit::Own => characteristic.unit().symbol(),
+        ErrorUnit::Millivolt => "mV",
     }
 }
 
 /// Returns the error of a reading in [`unit()`].
-pub fn error(parameter: Parameter, reading: &Reading) -> f64 {
+pub fn error(characteristic: Characteristic, reading: &Reading) -> f64 {
     let difference = reading.value - reading.truth;
-    match parameter.facts().definition.unit {
-        Unit::Ohm => 100.0 * difference / reading.truth,
-        Unit::Volt => 1000.0 * difference,
-        _ => difference,
+    match stated(characteristic) {
+        ErrorUnit::Percent => 100.0 * difference / reading.truth,
+        ErrorUnit::Own => difference,
+        ErrorUnit::Millivolt => 1000.0 * difference,
     }
 }
 
-/// Errors of one parameter in one lot.
+/// Errors of one characteristic in one lot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Errors {
     spread: Spread,
@@ -39,11 +45,11 @@ pub struct Errors {
 
 impl Errors {
     /// Collects the errors of the good parts of a lot.
-    pub fn of(parameter: Parameter, lot: &Lot) -> Self {
-        let readings = || lot.good().filter_map(|part| part.reading(parameter));
+    pub fn of(characteristic: Characteristic, lot: &Lot) -> Self {
+        let readings = || lot.good().filter_map(|part| part.reading(characteristic));
         Self {
             covered: readings().filter(is_covered).count() as u64,
-            ..Self::listed(readings().map(|reading| error(parameter, &reading)))
+            ..Self::listed(readings().map(|reading| error(characteristic, &reading)))
         }
     }
 
@@ -85,14 +91,19 @@ fn is_covered(reading: &Reading) -> bool {
         .is_some_and(|u| (reading.value - reading.truth).abs() <= u)
 }
 
-/// Errors of one parameter in every lot of a study.
+/// Errors of one characteristic in every lot of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pooled(Vec<Errors>);
 
 impl Pooled {
     /// Collects the errors of the good parts of all lots.
-    pub fn of(parameter: Parameter, lots: &[Lot]) -> Self {
-        Self(lots.iter().map(|lot| Errors::of(parameter, lot)).collect())
+    pub fn of(characteristic: impl Into<Characteristic>, lots: &[Lot]) -> Self {
+        let characteristic = characteristic.into();
+        Self(
+            lots.iter()
+                .map(|lot| Errors::of(characteristic, lot))
+                .collect(),
+        )
     }
 
     /// Collects the errors that `error` returns for the good parts of all lots.

@@ -4,7 +4,7 @@
 //! JSON object per line. It ignores unknown keys, so that either file may grow.
 
 use anyhow::{Context, bail};
-use machine::dut::em_relay::Parameter;
+use machine::dut::Characteristic;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -54,24 +54,24 @@ pub struct Truth {
     values: BTreeMap<String, Value>,
 }
 
-/// Each parameter with the range within the limits of the recipe, in the unit of the parameter.
-pub type Admitted = Vec<(Parameter, RangeInclusive<f64>)>;
+/// Each characteristic with the range within the limits of the recipe, in its unit.
+pub type Admitted = Vec<(Characteristic, RangeInclusive<f64>)>;
 
 impl Truth {
-    fn value(&self, parameter: Parameter) -> Option<f64> {
-        self.values.get(parameter.name())?.as_f64()
+    fn value(&self, characteristic: Characteristic) -> Option<f64> {
+        self.values.get(characteristic.key())?.as_f64()
     }
 
-    fn is_out_of_limits(&self, admitted: &[(Parameter, RangeInclusive<f64>)]) -> bool {
-        let out = |(parameter, range): &(Parameter, RangeInclusive<f64>)| {
-            self.value(*parameter)
+    fn is_out_of_limits(&self, admitted: &[(Characteristic, RangeInclusive<f64>)]) -> bool {
+        let out = |(characteristic, range): &(Characteristic, RangeInclusive<f64>)| {
+            self.value(*characteristic)
                 .is_some_and(|value| !range.contains(&value))
         };
         admitted.iter().any(out)
     }
 }
 
-/// A measured value and its truth, in the unit of the parameter.
+/// A measured value and its truth, in the unit of the characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
     /// Measured value.
@@ -108,13 +108,14 @@ impl Part {
         self.is_good() && !self.is_out_of_limits
     }
 
-    /// Returns value and truth of a parameter; `None` when the row has no value or the part has no true one.
-    pub fn reading(&self, parameter: Parameter) -> Option<Reading> {
-        let key = parameter.name();
+    /// Returns value and truth of a characteristic; `None` when the row has no value or the part has no true one.
+    pub fn reading(&self, characteristic: impl Into<Characteristic>) -> Option<Reading> {
+        let characteristic = characteristic.into();
+        let key = characteristic.key();
         Some(Reading {
             value: self.values.get(key).copied().flatten()?,
             uncertainty: self.uncertainty.get(key).copied().flatten(),
-            truth: self.truth.as_ref()?.value(parameter)?,
+            truth: self.truth.as_ref()?.value(characteristic)?,
         })
     }
 
@@ -213,7 +214,7 @@ impl Lot {
     }
 
     /// Marks the parts with a true value outside its range.
-    pub fn mark_out_of_limits(&mut self, admitted: &[(Parameter, RangeInclusive<f64>)]) {
+    pub fn mark_out_of_limits(&mut self, admitted: &[(Characteristic, RangeInclusive<f64>)]) {
         for part in &mut self.parts {
             let truth = part.truth.as_ref();
             part.is_out_of_limits = truth.is_some_and(|it| it.is_out_of_limits(admitted));

@@ -56,10 +56,15 @@ impl TimedParameter {
 
     /// Returns a row as [`Self::row`] does, but with the given errors instead of those of the parameter.
     pub fn row_of(&self, name: impl Into<String>, lots: &[Lot], errors: &Pooled) -> Figure {
-        Figure::new(name, errors.n(), errors.median_rms(), unit(self.parameter))
-            .with("bias", errors.median_bias())
-            .with("max", errors.worst())
-            .with("seconds", self.seconds(lots).mean())
+        Figure::new(
+            name,
+            errors.n(),
+            errors.median_rms(),
+            unit(self.parameter.into()),
+        )
+        .with("bias", errors.median_bias())
+        .with("max", errors.worst())
+        .with("seconds", self.seconds(lots).mean())
     }
 
     /// Returns a row of seconds with a bar.

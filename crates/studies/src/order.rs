@@ -5,8 +5,7 @@ use super::lot::{Admitted, Lot};
 use super::pool::{self, LOTS_AT_ONCE};
 use anyhow::{Context, ensure};
 use config::Folder;
-use machine::dut::Recipe;
-use machine::dut::em_relay::Parameter;
+use machine::dut::{Characteristic, Recipe};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
@@ -62,14 +61,19 @@ impl Order {
         })
     }
 
-    /// Returns the range that the recipe admits for every parameter; a limit that it does not set is infinite.
+    /// Returns the characteristics of the recipe's kind of part, in the order of reports.
+    pub fn characteristics(&self) -> Vec<Characteristic> {
+        self.recipe.device.kind().characteristics()
+    }
+
+    /// Returns the range that the recipe admits for every characteristic; a limit that it does not set is infinite.
     pub fn admitted(&self) -> Admitted {
-        let range = |parameter: &Parameter| {
-            let limit = self.recipe.limits.of(*parameter);
+        let range = |characteristic: Characteristic| {
+            let limit = self.recipe.limits.of(characteristic);
             let low = limit.low.unwrap_or(f64::NEG_INFINITY);
-            (*parameter, low..=limit.high.unwrap_or(f64::INFINITY))
+            (characteristic, low..=limit.high.unwrap_or(f64::INFINITY))
         };
-        Parameter::ALL.iter().map(range).collect()
+        self.characteristics().into_iter().map(range).collect()
     }
 
     /// Describes the lots for the head of a report.

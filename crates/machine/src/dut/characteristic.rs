@@ -27,6 +27,26 @@ pub struct Definition {
     pub bin: Bin,
 }
 
+/// How the error of a result is stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorUnit {
+    /// In percent of the true value.
+    Percent,
+    /// In the unit of the key.
+    Own,
+    /// In millivolts, for a key in volts.
+    Millivolt,
+}
+
+/// Greatest rms error of a result against the truth that is acceptable over a lot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AcceptedError {
+    /// Unit of `rms`.
+    pub unit: ErrorUnit,
+    /// The error.
+    pub rms: f64,
+}
+
 /// A characteristic of one kind of device. The default methods suit a characteristic that does not depend on
 /// temperature and has no lower bound in stored curves.
 pub trait KindCharacteristic {
@@ -36,6 +56,12 @@ pub trait KindCharacteristic {
     /// Returns the factor that converts a result at temperature `_from` to `_to`.
     fn conversion(&self, _from: Celsius, _to: Celsius) -> f64 {
         1.0
+    }
+
+    /// Returns the greatest rms error that is acceptable; `None` for a characteristic without true values. `_rated_v`:
+    /// nominal voltage of the part, V.
+    fn accepted_error(&self, _rated_v: Option<f64>) -> Option<AcceptedError> {
+        None
     }
 
     /// Returns the lower bound that stored curves prove for a part without a measured value, in the unit of the key,

@@ -8,7 +8,7 @@ use serde_json::json;
 
 #[test]
 fn errors_count_good_parts_in_millivolts() {
-    let errors = Errors::of(Parameter::OperateVoltage, &three_good_one_bad());
+    let errors = Errors::of(Parameter::OperateVoltage.into(), &three_good_one_bad());
     assert_eq!(errors.n(), 3);
     near(errors.bias(), 0.0);
     near(errors.rms(), (126.0_f64 / 3.0).sqrt());
@@ -21,7 +21,10 @@ fn the_rms_of_a_single_error_is_its_size() {
         &[row(1, "pass", "pass", 7.996)],
         &[truth(1, None, "pass", 8.0)],
     );
-    near(Errors::of(Parameter::OperateVoltage, &lot).rms(), 4.0);
+    near(
+        Errors::of(Parameter::OperateVoltage.into(), &lot).rms(),
+        4.0,
+    );
 }
 
 #[test]
@@ -31,7 +34,7 @@ fn the_coil_error_is_relative_to_the_truth() {
     let mut known = truth(1, None, "pass", 8.0);
     known["coil_resistance_ohm"] = json!(400.0);
     near(
-        Errors::of(Parameter::CoilResistance, &lot(&[part], &[known])).rms(),
+        Errors::of(Parameter::CoilResistance.into(), &lot(&[part], &[known])).rms(),
         0.5,
     );
 }

@@ -163,7 +163,7 @@ fn a_part_beyond_a_limit_is_rightly_rejected() {
         truth(3, None, "pass", 9.001),
     ];
     let mut it = lot(&rows, &truths);
-    it.mark_out_of_limits(&[(Parameter::OperateVoltage, f64::NEG_INFINITY..=9.0)]);
+    it.mark_out_of_limits(&[(Parameter::OperateVoltage.into(), f64::NEG_INFINITY..=9.0)]);
     let notes = exception::outcome(std::slice::from_ref(&it));
     assert_eq!(notes.len(), 1);
     assert!(

@@ -5,7 +5,9 @@ use super::coil::to_reference;
 use super::measure::Stage;
 use super::threshold::Direction;
 use super::{bins, evidence};
-use crate::dut::characteristic::{Characteristic, Definition, KindCharacteristic};
+use crate::dut::characteristic::{
+    AcceptedError, Characteristic, Definition, ErrorUnit, KindCharacteristic,
+};
 use crate::gauge::repetition::MeanOf;
 use crate::instrument::curve::Curve;
 use crate::rig::bin::Bin;
@@ -185,6 +187,28 @@ impl KindCharacteristic for Parameter {
             true => to_reference(from, to),
             false => 1.0,
         }
+    }
+
+    fn accepted_error(&self, rated_v: Option<f64>) -> Option<AcceptedError> {
+        let Facts {
+            definition,
+            allowed_rms,
+            ..
+        } = *self.facts();
+        Some(match definition.unit {
+            Unit::Ohm => AcceptedError {
+                unit: ErrorUnit::Percent,
+                rms: allowed_rms,
+            },
+            Unit::Volt => AcceptedError {
+                unit: ErrorUnit::Millivolt,
+                rms: (allowed_rms * rated_v? * 1e4).round() / 1e3,
+            },
+            _ => AcceptedError {
+                unit: ErrorUnit::Own,
+                rms: allowed_rms,
+            },
+        })
     }
 
     fn lower_bound(&self, curves: &[Curve], rated_v: Option<f64>) -> Option<f64> {

@@ -1,6 +1,8 @@
 //! The one characteristic of a resistor, and its bin.
 
-use crate::dut::characteristic::{Characteristic, Definition, KindCharacteristic};
+use crate::dut::characteristic::{
+    AcceptedError, Characteristic, Definition, ErrorUnit, KindCharacteristic,
+};
 use crate::gauge::repetition::MeanOf;
 use crate::rig::bin::Bin;
 use units::Unit;
@@ -24,6 +26,15 @@ impl KindCharacteristic for Parameter {
     fn definition(&self) -> &'static Definition {
         match self {
             Self::Resistance => &RESISTANCE,
+        }
+    }
+
+    fn accepted_error(&self, _rated_v: Option<f64>) -> Option<AcceptedError> {
+        match self {
+            Self::Resistance => Some(AcceptedError {
+                unit: ErrorUnit::Percent,
+                rms: 0.12,
+            }),
         }
     }
 }

@@ -123,7 +123,7 @@ fn sound() -> Case {
             row("two", 1, 37, "fail", "voltage", Some(41)),
         ],
         alarms: vec![alarm("one", "part_dropped", 13)],
-        limits: vec![(Parameter::CoilResistance, 360.0..=440.0)],
+        limits: vec![(Parameter::CoilResistance.into(), 360.0..=440.0)],
         faults: Vec::new(),
         disturbed_us: vec![22 * S],
         reaction: Span::ms(250),

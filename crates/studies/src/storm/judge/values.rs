@@ -77,7 +77,10 @@ fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
 fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
     // Distance of the truth from the nearer limit; positive inside the range.
     let inside = |it: &Reading| {
-        let own = case.limits.iter().find(|(known, _)| *known == it.parameter);
+        let own = case
+            .limits
+            .iter()
+            .find(|(known, _)| *known == it.parameter.into());
         own.map_or(f64::INFINITY, |(_, range)| {
             (it.truth - range.start()).min(range.end() - it.truth)
         })
