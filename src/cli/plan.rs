@@ -92,6 +92,9 @@ struct DemandArgs {
     /// Only straight ways of single elements and groups: no ways of two steps, no subassemblies
     #[arg(long)]
     straight: bool,
+    /// Nothing comes off while another element rests on it
+    #[arg(long)]
+    supported: bool,
 }
 
 #[derive(Debug, Args)]
@@ -142,6 +145,7 @@ impl DemandArgs {
             groups: self.group.iter().map(ids).collect(),
             forbidden: self.forbid.clone(),
             straight_only: self.straight,
+            keeps_supports: self.supported,
         }
     }
 }

@@ -17,6 +17,9 @@ pub struct Demands {
     pub forbidden: Vec<Direction>,
     /// True when only straight ways and single units are wanted: no ways of two steps, no subassemblies that are found.
     pub straight_only: bool,
+    /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element rests
+    /// on what holds it from below.
+    pub keeps_supports: bool,
 }
 
 /// Demands by element numbers, free of contradictions.

@@ -10,7 +10,7 @@ use crate::improve::shortened;
 use crate::joint::subassembly;
 use crate::locked::{locked, locked_around};
 use crate::only::fewest;
-use crate::problem::{Problem, Taken};
+use crate::problem::{Problem, Taken, Way};
 use crate::remaining::Remaining;
 use crate::sequence::{Method, Sequence, Step};
 use crate::shortest::best_order;
@@ -83,9 +83,10 @@ impl<'a> Planner<'a> {
     pub fn disassembly(&self, demands: &Demands) -> Result<Outcome, PlanError> {
         let resolved = demands.resolved(self.assembly)?;
         let units = Units::of(&resolved.groups, self.assembly.len());
-        let mut problem = self.problem(&units, &resolved);
+        let rests = demands.keeps_supports.then(|| self.rests(&units));
+        let mut problem = self.problem(&units, &resolved, rests.as_deref());
         if !demands.straight_only {
-            problem = self.with_two_steps(problem, &units, &resolved)?;
+            problem = self.with_two_steps(problem, &units, &resolved, rests.as_deref())?;
         }
         let mut wanted: Vec<usize> = resolved
             .remove
@@ -116,12 +117,29 @@ impl<'a> Planner<'a> {
         ))
     }
 
-    fn problem(&self, units: &Units, resolved: &Resolved) -> Problem {
+    fn problem(&self, units: &Units, resolved: &Resolved, rests: Option<&[Vec<u32>]>) -> Problem {
         let tables = [&self.global, &self.local];
-        let ways = straight(self.assembly, units, &tables, &resolved.allowed);
+        let mut ways = straight(self.assembly, units, &tables, &resolved.allowed);
+        for (unit, of_unit) in ways.iter_mut().enumerate() {
+            hold(of_unit, unit, rests);
+        }
         let stays = |members: &Vec<usize>| members.iter().any(|it| resolved.stays[*it]);
         let leaves = units.members.iter().map(|members| !stays(members));
         Problem::new(ways, leaves.collect())
+    }
+
+    /// Returns the units that rest on each unit.
+    fn rests(&self, units: &Units) -> Vec<Vec<u32>> {
+        let mut found: Vec<Vec<u32>> = vec![Vec::new(); units.members.len()];
+        for (element, upper) in units.of_element.iter().enumerate() {
+            for below in self.local.blockers(element, Direction::MinusZ) {
+                let lower = units.of_element[*below as usize];
+                if lower != *upper && !found[lower].contains(&(*upper as u32)) {
+                    found[lower].push(*upper as u32);
+                }
+            }
+        }
+        found
     }
 
     /// Adds two-step ways for the units that no order of straight ways frees.
@@ -130,6 +148,7 @@ impl<'a> Planner<'a> {
         problem: Problem,
         units: &Units,
         resolved: &Resolved,
+        rests: Option<&[Vec<u32>]>,
     ) -> Result<Problem, PlanError> {
         let mut remaining = Remaining::all(&problem);
         remaining.remove_removable();
@@ -139,7 +158,8 @@ impl<'a> Planner<'a> {
         let in_place = |unit: usize| remaining.is_present(unit);
         let mut more = Vec::new();
         for unit in problem.leaving().filter(|unit| in_place(*unit)) {
-            let ways = two_step(self.assembly, units, unit, &resolved.allowed, in_place)?;
+            let mut ways = two_step(self.assembly, units, unit, &resolved.allowed, in_place)?;
+            hold(&mut ways, unit, rests);
             more.push((unit, ways));
         }
         Ok(problem.with(more))
@@ -156,6 +176,18 @@ impl<'a> Planner<'a> {
             Some(found) => named(units, &found.units, &found.by, found.is_smallest),
             None => named(units, wanted, &[], false),
         })
+    }
+}
+
+/// Lets every way of a unit wait for the units that rest on it.
+fn hold(ways: &mut [Way], unit: usize, rests: Option<&[Vec<u32>]>) {
+    let Some(on_unit) = rests.and_then(|it| it.get(unit)) else {
+        return;
+    };
+    for way in ways {
+        way.blockers.extend(on_unit);
+        way.blockers.sort_unstable();
+        way.blockers.dedup();
     }
 }
 

@@ -237,3 +237,32 @@ fn a_changeover_returns_what_was_in_the_way() {
         assert!(verified(assembly, steps).unwrap().is_ok());
     }
 }
+
+#[test]
+fn nothing_leaves_from_under_what_rests_on_it() {
+    let assembly = assembled(vec![
+        between("plate", [0.0, 0.0, 0.0], [20.0, 20.0, 2.0]),
+        between("block", [5.0, 5.0, 2.0], [15.0, 15.0, 6.0]),
+        between("cover", [5.0, 5.0, 6.0], [15.0, 15.0, 7.0]),
+    ]);
+    let sideways = Demands {
+        forbidden: vec![Direction::PlusZ, Direction::MinusZ],
+        ..Demands::default()
+    };
+    let ids = |demands: &Demands| -> Vec<String> {
+        let sequence = sequence_of(&assembly, demands);
+        let each = sequence.steps.iter();
+        each.map(|step| assembly.id(step.elements[0]).to_owned())
+            .collect()
+    };
+    let remove = Demands {
+        remove: vec!["plate".to_owned()],
+        ..sideways
+    };
+    assert_eq!(ids(&remove), ["plate"]);
+    let supported = Demands {
+        keeps_supports: true,
+        ..remove
+    };
+    assert_eq!(ids(&supported), ["cover", "block", "plate"]);
+}

@@ -45,7 +45,7 @@ impl Dice {
         }
     }
 
-    fn pose(&mut self) -> Pose {
+    fn pose(&mut self, within: u64) -> Pose {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let turns = [
             [1.0, 0.0, 0.0, 0.0],
@@ -57,15 +57,18 @@ impl Dice {
             [0.5, 0.5, 0.5, 0.5],
         ];
         Pose {
-            position: self.corner(5),
+            position: self.corner(within),
             rotation: turns[self.whole(0, 6) as usize],
         }
     }
 
-    fn scene(&mut self, count: usize) -> Assembly {
+    /// Draws elements that do not overlap, from `within` mm of the origin and, after many attempts, from farther.
+    fn scene(&mut self, count: usize, within: u64) -> Assembly {
         let mut elements: Vec<Element> = Vec::new();
+        let mut attempts = 0;
         loop {
-            let (shape, pose) = (self.body(), self.pose());
+            attempts += 1;
+            let (shape, pose) = (self.body(), self.pose(within + attempts / 100));
             elements.push(Element {
                 id: format!("e{}", elements.len()),
                 shape,
@@ -80,6 +83,71 @@ impl Dice {
     }
 }
 
+/// Cells of a puzzle along x, y and z.
+const CELLS: [usize; 3] = [4, 4, 3];
+
+impl Dice {
+    /// Divides a block of cubes of 2 mm among pieces that grow from one cube each, in exact contact on all sides; a
+    /// cube in ten stays empty.
+    fn puzzle(&mut self, count: usize) -> Assembly {
+        let all = CELLS.iter().product::<usize>();
+        let mut owner: Vec<Option<usize>> = vec![None; all];
+        let mut pieces: Vec<Vec<usize>> = Vec::new();
+        while pieces.len() < count {
+            let cell = self.whole(0, all as u64 - 1) as usize;
+            if owner[cell].is_none() {
+                owner[cell] = Some(pieces.len());
+                pieces.push(vec![cell]);
+            }
+        }
+        for _ in 0..20 * all {
+            let piece = self.whole(0, count as u64 - 1) as usize;
+            // Mostly from the end, so that pieces become long and wind around each other.
+            let back = self.whole(0, 9).max(6.0) as usize - 6;
+            let from = pieces[piece][pieces[piece].len().saturating_sub(1 + back)];
+            let Some(cell) = beside(from, self.whole(0, 5) as usize) else {
+                continue;
+            };
+            if owner[cell].is_none() && cell % 10 != 7 {
+                owner[cell] = Some(piece);
+                pieces[piece].push(cell);
+            }
+        }
+        let cube = |cell: &usize| {
+            (
+                Pose::at(corner(*cell).map(|at| 2.0 * at as f64)),
+                block([1.0; 3]),
+            )
+        };
+        let bodies = pieces.iter().enumerate().map(|(number, cells)| {
+            let parts = Shape::Compound(cells.iter().map(cube).collect());
+            element(&format!("e{number}"), parts, [0.0; 3])
+        });
+        assembled(bodies.collect())
+    }
+}
+
+/// Returns the place of a cell along x, y and z.
+fn corner(cell: usize) -> [usize; 3] {
+    [
+        cell % CELLS[0],
+        cell / CELLS[0] % CELLS[1],
+        cell / (CELLS[0] * CELLS[1]),
+    ]
+}
+
+/// Returns the neighbour of a cell in one of six directions.
+fn beside(cell: usize, direction: usize) -> Option<usize> {
+    let mut at = corner(cell);
+    let axis = direction / 2;
+    at[axis] = if direction % 2 == 0 {
+        at[axis].checked_sub(1)?
+    } else {
+        at[axis] + 1
+    };
+    (at[axis] < CELLS[axis]).then(|| at[0] + CELLS[0] * (at[1] + CELLS[1] * at[2]))
+}
+
 #[test]
 fn random_scenes_get_the_order_of_brute_force() {
     let (mut solved, mut locked, mut optimal, mut worst) = (0, 0, 0, 1.0_f64);
@@ -88,7 +156,11 @@ fn random_scenes_get_the_order_of_brute_force() {
     for seed in 0..count {
         let mut dice = Dice(Xoshiro256PlusPlus::seed_from_u64(seed));
         let elements = 4 + (seed % 4) as usize;
-        let assembly = dice.scene(elements);
+        let assembly = if seed % 8 < 4 {
+            dice.scene(elements, 5)
+        } else {
+            dice.puzzle(elements)
+        };
         let mut brute = Brute::of(&assembly);
         let best = brute.best((1 << elements) - 1, None);
         let straight = Demands {
