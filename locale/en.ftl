@@ -1695,3 +1695,18 @@ instrument-adapter_address = The GPIB adapter has address { $found }, expected {
 instrument-never_silent = The link never falls silent; another program uses the instrument.
 instrument-overdue = Not finished within { $limit_ms } ms.
 instrument-link_down = The link is down after { $attempts } attempts: { $detail }.
+
+## Plans: what blocks the elements of a scene, and in which order they come off and go on
+
+plan-blocked = { $element } towards { $way }: { $others }
+plan-remove = { $number }. Take off { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-add = { $number }. Put on { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-remove_on_bench = { $number }. On the bench, take off { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-add_on_bench = { $number }. On the bench, put on { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-beyond = above 25 mm
+plan-locked = No order exists. These elements lock each other: { $elements }.
+plan-held = { $element } is held by { $others }.
+plan-stays = Stays in place: { $elements }.
+plan-goes = Comes off for good: { $elements }.
+plan-comes = Is new: { $elements }.
+plan-returns = Comes off for a while and goes back: { $elements }.

@@ -1680,3 +1680,18 @@ instrument-adapter_address = GPIB 适配器的地址为 { $found }，应为 { $e
 instrument-never_silent = 链路始终不静默，另有程序在使用该仪器。
 instrument-overdue = { $limit_ms } ms 内没有完成。
 instrument-link_down = 尝试 { $attempts } 次后链路仍不可用：{ $detail }。
+
+## Plans: what blocks the elements of a scene, and in which order they come off and go on
+
+plan-blocked = { $element } 朝 { $way }：{ $others }
+plan-remove = { $number }. 拆下 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-add = { $number }. 装上 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-remove_on_bench = { $number }. 在台面上拆下 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-add_on_bench = { $number }. 在台面上装上 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-beyond = 25 mm 以上
+plan-locked = 不存在可行顺序。以下零件互相锁住：{ $elements }。
+plan-held = { $element } 被 { $others } 挡住。
+plan-stays = 保持不动：{ $elements }。
+plan-goes = 拆下不再装回：{ $elements }。
+plan-comes = 新装：{ $elements }。
+plan-returns = 暂时拆下后装回：{ $elements }。

@@ -16,6 +16,7 @@ mod installed;
 pub mod instrument;
 pub mod lot;
 mod output;
+pub mod plan;
 pub mod rig;
 pub mod run;
 pub mod serve;
@@ -107,6 +108,8 @@ pub enum Command {
     Instrument(instrument::InstrumentArgs),
     /// Tell whether moves in a scene collide; needs no rig
     Check(check::CheckArgs),
+    /// What blocks the elements of a scene, and in which order they come off and go on, no rig
+    Plan(plan::PlanArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
     /// Unacknowledged alarms; acknowledge or shelve them
@@ -177,6 +180,7 @@ impl Cli {
             Command::Bus(args) => bus::run(&args),
             Command::Instrument(args) => instrument::run(config, &args),
             Command::Check(args) => check::run(args),
+            Command::Plan(args) => plan::run(config, &args),
             Command::History(args) => history::run(&files, args),
             Command::Alarm(args) => alarm::run(db, &args),
             Command::Lot(args) => lot::run(db, &args),

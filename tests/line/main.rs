@@ -19,6 +19,7 @@
 //! - `packaging`: units, scripts and contents of the Debian package.
 //! - `paper`: printing, export, rejudging, retention.
 //! - [`picture`]: the drawing in README.md matches `config/scene.toml`.
+//! - [`plan`]: tables and orders of scenes, every step tried again by `check`; refusals.
 //! - `prompts`: prompts of a recipe, with answers given in advance.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
 //! - `stories`: scripts of troubles and orders with their expected course.
@@ -66,6 +67,7 @@ mod packaging;
 #[cfg(feature = "sim")]
 mod paper;
 mod picture;
+mod plan;
 mod program;
 #[cfg(feature = "sim")]
 mod prompts;

@@ -41,7 +41,7 @@ impl LoadedScene {
     /// # Errors
     /// Fails on an invalid file; the error names the file and the path of the field.
     pub fn load(path: &Path) -> anyhow::Result<Self> {
-        let scene = load_scene(path)?;
+        let (scene, _, _) = load_scene(path)?;
         let (model, keys) = built(&scene)?;
         let movers = scene.movers.iter().map(|mover| {
             Mover::new(&mover.carried()).with_context(|| format!("mover {}", mover.id))
@@ -101,7 +101,8 @@ impl LoadedScene {
     }
 }
 
-fn load_scene(path: &Path) -> anyhow::Result<Scene> {
+/// Loads a scene file and returns it with its text and format; the extension says the format.
+pub(crate) fn load_scene(path: &Path) -> anyhow::Result<(Scene, String, Format)> {
     let is = |known: &str| {
         path.extension()
             .is_some_and(|it| it.eq_ignore_ascii_case(known))
@@ -127,8 +128,9 @@ fn load_scene(path: &Path) -> anyhow::Result<Scene> {
         actuators: &actuators,
         bodies: &part_names(),
     };
-    read_scene_of_rig(&text, format, &mut files, &elsewhere)
-        .with_context(|| path.display().to_string())
+    let scene = read_scene_of_rig(&text, format, &mut files, &elsewhere)
+        .with_context(|| path.display().to_string())?;
+    Ok((scene, text, format))
 }
 
 fn built(scene: &Scene) -> anyhow::Result<(Model, Vec<ElementKey>)> {

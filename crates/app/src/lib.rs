@@ -10,6 +10,7 @@
 //! | [`lot`] | a run: one stream of events and its subscribers |
 //! | [`real_time`] | the thread of the lines and the cycle |
 //! | [`host_check`] | whether this computer keeps the rig's time |
+//! | [`planning`] | what blocks the elements of a scene, and in which order they come off and go on |
 //! | [`exit`] | reasons why a run ends |
 //! | [`service`] | one lot after another, ordered at a page |
 //! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
@@ -56,6 +57,7 @@ pub mod lot;
 pub mod lot_decision;
 pub mod order;
 pub mod order_queue;
+pub mod planning;
 pub mod progress;
 pub mod real_time;
 pub mod restore;

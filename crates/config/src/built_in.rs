@@ -17,6 +17,7 @@ pub(super) const BUILT_IN: &[(&str, &str)] = files![
     "instruments/pulse-source.toml",
     "instruments/smu-2450.toml",
     "lot.toml",
+    "nests/body-18x12.toml",
     "recipes/jzc-22f-003.toml",
     "recipes/jzc-22f-005.toml",
     "recipes/jzc-22f-006.toml",

@@ -24,6 +24,8 @@ pub(crate) enum Wanted {
     Any,
     /// The first contact on the path.
     First,
+    /// Every piece that the body meets anywhere on the path; places and order do not matter.
+    Every,
 }
 
 /// A pair that comes within the margin at the fraction `t` of the path.
@@ -92,6 +94,8 @@ impl Passage<'_> {
 pub(crate) struct Findings<'a> {
     wanted: Wanted,
     pub(crate) best: Option<Found>,
+    /// Numbers of the stationary pieces met, for [`Wanted::Every`]; a piece may be listed more than once.
+    pub(crate) met: Vec<u32>,
     pub(crate) pending: Vec<Pending>,
     /// The straight path with the reciprocals of its displacement, computed when first needed.
     run: Option<Run<'a>>,
@@ -104,6 +108,7 @@ impl Findings<'_> {
         Findings {
             wanted,
             best: None,
+            met: Vec::new(),
             pending: Vec::new(),
             run: None,
         }
@@ -113,7 +118,7 @@ impl Findings<'_> {
     #[inline]
     pub(crate) fn until(&self) -> f64 {
         match (&self.best, self.wanted) {
-            (None, _) => 1.0,
+            (None, _) | (Some(_), Wanted::Every) => 1.0,
             (Some(_), Wanted::Any) => -1.0,
             (Some(best), Wanted::First) if best.t <= 0.0 => -1.0,
             (Some(best), Wanted::First) => best.t,
@@ -122,7 +127,9 @@ impl Findings<'_> {
 
     #[inline]
     pub(crate) fn offer(&mut self, found: Option<Found>) {
-        if let Some(found) = found
+        if self.wanted == Wanted::Every {
+            self.met.extend(found.map(|found| found.element));
+        } else if let Some(found) = found
             && self.best.as_ref().is_none_or(|known| found.t < known.t)
         {
             self.best = Some(found);

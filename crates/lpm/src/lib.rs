@@ -2,9 +2,9 @@
 //! "clear".
 //!
 //! The library has no clock, no file access and no settings of its own. Lengths are in millimetres, frames are
-//! right-handed, z points up. [`Model`] holds the stationary elements. Three questions check a [`Move`] of a [`Mover`]
-//! or a [`Shape`] against them: [`Model::any_hit`] (is there any contact?), [`Model::first_contact`] and
-//! [`Model::clearance`]. [`Model::first_forbidden`] applies a [`Permission`] to each pair of mover and element.
+//! right-handed, z points up. [`Model`] holds the stationary elements. Four questions check a [`Move`] of a [`Mover`] or
+//! a [`Shape`] against them: [`Model::any_hit`] (is there any contact?), [`Model::every_hit`] (with which elements?),
+//! [`Model::first_contact`] and [`Model::clearance`]. [`Model::first_forbidden`] applies a [`Permission`] to each pair of mover and element.
 //!
 //! ```
 //! use lpm::{Model, Move, Pose, Shape};

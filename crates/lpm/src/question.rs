@@ -1,4 +1,5 @@
-//! The three questions to the model: is there any hit, where is the first contact, how large is the clearance.
+//! The four questions to the model: is there any hit, where is the first contact, which elements are hit at all, how
+//! large is the clearance.
 
 use super::answer::{Answer, Clearance, Contact, ElementKey, Move};
 use super::contact::{Findings, Wanted};
@@ -24,6 +25,33 @@ impl Model {
     pub fn any_hit(&self, mover: &impl Moving, way: &Move) -> Option<ElementKey> {
         let answer = mover.with_mover(|body| self.ask::<AnyHit>(body, way));
         answer.unwrap_or(Some(ElementKey::UNDECIDABLE))
+    }
+
+    /// Returns every element of which the mover comes within the margin during the move, in the order of their keys and
+    /// each once. An element that is missing is proven to stay farther away.
+    ///
+    /// For a move that cannot be decided, the only entry is [`ElementKey::UNDECIDABLE`].
+    pub fn every_hit(&self, mover: &impl Moving, way: &Move) -> Vec<ElementKey> {
+        let answer = mover.with_mover(|body| self.all_on_the_way(body, way));
+        answer
+            .flatten()
+            .unwrap_or_else(|| vec![ElementKey::UNDECIDABLE])
+    }
+
+    fn all_on_the_way(&self, body: &Mover, way: &Move) -> Option<Vec<ElementKey>> {
+        let path = Path::of(way);
+        let path = path.as_ref()?;
+        let passage = Passage::new(self, body, path, way);
+        let mut found = Findings::wanted(Wanted::Every);
+        passage.contact(&mut found);
+        let mut hits: Vec<ElementKey> = found.met.iter().map(|it| self.owner(*it)).collect();
+        if self.may_enclose(body) {
+            let enclosed = self.holding(body, way);
+            hits.extend(enclosed.map(|(piece, _)| self.owner(piece)));
+        }
+        hits.sort_unstable();
+        hits.dedup();
+        Some(hits)
     }
 
     /// Returns the least distance over the move; `None` when it exceeds `range_mm`.
@@ -76,14 +104,21 @@ impl Model {
     /// touch.
     #[inline]
     fn enclosed(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {
-        if self.hollow.is_empty() && !body.is_hollow() {
+        if !self.may_enclose(body) {
             return None;
         }
-        self.holding(body, way)
+        self.holding(body, way).next()
     }
 
+    /// Returns true when the mover or an element encloses a space in which the other one can lie.
+    #[inline]
+    fn may_enclose(&self, body: &Mover) -> bool {
+        !self.hollow.is_empty() || body.is_hollow()
+    }
+
+    /// Yields the elements that enclose the mover at the start, or lie inside it, each by one of its pieces.
     #[cold]
-    fn holding(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {
+    fn holding(&self, body: &Mover, way: &Move) -> impl Iterator<Item = (u32, Hit)> {
         let inside = body.interior_at(&way.from);
         let candidates: Vec<u32> = if body.is_hollow() {
             self.taken_slots().collect()
@@ -93,11 +128,11 @@ impl Model {
         let counted = candidates
             .into_iter()
             .filter(|slot| !way.ignore.contains(&self.key(*slot)));
-        let shared = |slot: u32| {
+        let shared = move |slot: u32| {
             let point = self.shared_point(slot, &inside)?;
             Some((self.first_piece(slot), Hit::inside(point)))
         };
-        counted.filter_map(shared).next()
+        counted.filter_map(shared)
     }
 }
 

@@ -41,7 +41,7 @@ fn straight(from: [f64; 3], to: [f64; 3]) -> Move<'static> {
     way(Pose::at(from), Pose::at(to))
 }
 
-/// Returns the fraction of the first contact, `None` when clear; asserts that the three questions agree.
+/// Returns the fraction of the first contact, `None` when clear; asserts that the questions agree.
 fn stop(model: &Model, mover: &Shape, way: &Move) -> Option<f64> {
     let stop = match model.first_contact(mover, way) {
         Answer::Clear => None,
@@ -50,6 +50,11 @@ fn stop(model: &Model, mover: &Shape, way: &Move) -> Option<f64> {
     assert_eq!(
         stop.is_some(),
         model.any_hit(mover, way).is_some(),
+        "{way:?}"
+    );
+    assert_eq!(
+        stop.is_some(),
+        !model.every_hit(mover, way).is_empty(),
         "{way:?}"
     );
     stop

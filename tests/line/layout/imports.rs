@@ -11,6 +11,7 @@ const PURE: &[(&str, &[&str])] = &[
         "lpm",
         &["serde", "serde_json", "thiserror", "toml", "units"],
     ),
+    ("plan", &["lpm", "thiserror"]),
     ("quality", &["serde", "statrs", "thiserror", "utoipa"]),
     (
         "machine",

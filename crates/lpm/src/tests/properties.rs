@@ -63,6 +63,12 @@ fn the_broad_phase_loses_no_contact() {
                 .filter_map(|one| stop(one, &mover, &move_))
                 .min_by(f64::total_cmp);
             assert_eq!(stop(&model, &mover, &move_), first, "seed {seed}");
+            let met = |at: &usize| alone[*at].any_hit(&mover, &move_).is_some();
+            let each: Vec<ElementKey> = (0..alone.len())
+                .filter(met)
+                .map(|at| keys[20 + at])
+                .collect();
+            assert_eq!(model.every_hit(&mover, &move_), each, "seed {seed}");
             let nearest = alone
                 .iter()
                 .map(|one| least(one, &mover, &move_))

@@ -1,0 +1,52 @@
+//! The sequence of the paper: the direction that frees most comes first.
+//!
+//! Priority directions are tried before all others. Each direction is used once: it is left when nothing more leaves in
+//! it. The rule can end with elements in place although an order exists; the searches then take over.
+
+use crate::direction::Direction;
+use crate::problem::{Problem, Taken};
+use crate::remaining::Remaining;
+
+/// What the rule of the paper gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Greedy {
+    /// Units that leave, in their order.
+    pub order: Vec<Taken>,
+    /// Directions in the order of their use.
+    pub directions: Vec<Direction>,
+    /// Number of units that are left where the rule is stuck.
+    pub left: usize,
+}
+
+/// Applies the rule: priority directions first, then the others, each once and the one that frees most first.
+pub fn greedy(problem: &Problem, priority: &[Direction]) -> Greedy {
+    let mut remaining = Remaining::all(problem);
+    let mut done = Greedy {
+        order: Vec::new(),
+        directions: Vec::new(),
+        left: 0,
+    };
+    let others = Direction::ALL
+        .into_iter()
+        .filter(|it| !priority.contains(it));
+    for mut set in [priority.to_vec(), others.collect()] {
+        while !set.is_empty() && remaining.left() > 0 {
+            let tried = set.iter().map(|direction| {
+                let mut after = remaining.clone();
+                let order = after.remove_along(*direction);
+                (*direction, order, after)
+            });
+            // Of directions that free equally much, the first of the set wins.
+            let best = tried.reduce(|a, b| if b.1.len() > a.1.len() { b } else { a });
+            let Some((direction, order, after)) = best.filter(|it| !it.1.is_empty()) else {
+                break;
+            };
+            set.retain(|it| *it != direction);
+            done.directions.push(direction);
+            done.order.extend(order);
+            remaining = after;
+        }
+    }
+    done.left = remaining.left();
+    done
+}
