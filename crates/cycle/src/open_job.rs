@@ -44,9 +44,6 @@ impl OpenJob {
 
     /// Returns the result of a job without open transactions.
     pub(super) fn if_empty(&self, at: RigTime) -> Option<JobDone> {
-        (self.parts == 0).then(|| JobDone {
-            at,
-            trouble: self.trouble.clone(),
-        })
+        (self.parts == 0).then(|| JobDone::new(at, self.trouble.clone()))
     }
 }

@@ -48,12 +48,16 @@ pub enum Flow {
 
 /// Why a text is no address of an instrument.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error(
-    "found \"{found}\", expected tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDR or gpib-serial:PATH:BAUD:ADDR"
-)]
+#[error("found \"{found}\", expected {}", LinkAddress::FORMS)]
 pub struct LinkAddressError {
     /// The text.
     pub found: String,
+}
+
+impl LinkAddress {
+    /// Forms of an address in words.
+    pub const FORMS: &str =
+        "tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDR or gpib-serial:PATH:BAUD:ADDR";
 }
 
 impl FromStr for LinkAddress {

@@ -17,6 +17,7 @@ const PURE: &[(&str, &[&str])] = &[
         &[
             "dcon",
             "lpm",
+            "scpi",
             "serde",
             "serde_json",
             "statrs",

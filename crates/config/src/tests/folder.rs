@@ -3,7 +3,7 @@
 use super::revision::files;
 use crate::{Change, Folder, InitError, Plant, check_all, init, load_recipe, revise, revision};
 use serde_json::json;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,8 @@ fn every_file_of_the_configuration_is_compiled_in() {
         unreachable!("files in memory")
     };
     let mut repository = texts(&config());
-    repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
+    repository
+        .retain(|name, _| !name.starts_with("recipes/revisions/") && !name.starts_with("rigs/"));
     let names: Vec<&String> = repository.keys().collect();
     assert_eq!(
         memory.texts().keys().collect::<Vec<_>>(),
@@ -38,6 +39,24 @@ fn every_file_of_the_configuration_is_compiled_in() {
         "list the files in crates/config/src/built_in.rs"
     );
     assert_eq!(memory.texts(), repository);
+}
+
+#[test]
+fn every_rig_of_the_repository_is_compiled_in() {
+    let entries = fs::read_dir(config().join("rigs")).unwrap();
+    let names = entries.map(|it| it.unwrap().file_name().into_string().unwrap());
+    let names: BTreeSet<String> = names.collect();
+    let known: BTreeSet<String> = Folder::built_in_rigs().map(str::to_owned).collect();
+    assert_eq!(known, names);
+    for name in names {
+        let Some(Folder::Memory(memory)) = Folder::built_in_rig(&name) else {
+            unreachable!("files in memory")
+        };
+        let mut repository = texts(&config().join("rigs").join(&name));
+        repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
+        assert_eq!(memory.texts(), repository, "{name}");
+    }
+    assert!(Folder::built_in_rig("none").is_none());
 }
 
 #[test]
