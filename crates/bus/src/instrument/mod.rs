@@ -4,9 +4,13 @@
 //! The crate [`scpi`] proves that a reply is that of its query; a link adds clock, stream and a log of the traffic.
 
 mod log;
+mod message;
+mod task;
 
 use super::{Direction, OpenPort, Pace, Port, Timer, escaped, open_serial_with};
 pub use log::{LinkLog, Traffic};
+pub use message::message;
+pub use task::{ProgramAnswer, ProgramRequest, Start, serve};
 use scpi::{
     Failure, Flow, Form, LinkAddress, LinkSettings, Move, Program, Question, Raw, Reader, Reply,
     ReplyError, Session, Transport,
