@@ -1,5 +1,6 @@
 //! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
 
+use super::instrument_tasks::InstrumentTasks;
 use super::lot::{LotContext, Purpose};
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
@@ -7,11 +8,12 @@ use super::{simulated, source::Simulated, truth_file::TruthFile};
 use anyhow::anyhow;
 use bus::{LineLog, LineSettings, OpenPort, Pace, Reading};
 use config::{Plant, SerialReaderSettings};
-use cycle::LineEnds;
+use cycle::{InstrumentEnds, LineEnds};
 use machine::handling::serial::SourceName;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
 use rigsim::{SharedRig, pty, wire};
+use scpi::LinkAddress;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
@@ -41,6 +43,8 @@ pub struct Lines {
     handle: Handle,
     /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
+    /// Queue ends of the instruments that the cycle holds, in the order of the wiring.
+    pub instruments: Vec<InstrumentEnds>,
     /// Readings of the code reader; `None` in a lot without one.
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Trace and health of each line, with its name.
@@ -57,6 +61,7 @@ impl Lines {
         Self {
             handle: handle.clone(),
             ends: Vec::new(),
+            instruments: Vec::new(),
             readings: None,
             logs: Vec::new(),
             #[cfg(feature = "sim")]
@@ -197,17 +202,50 @@ fn serial(
         let port = port(READER, &reader.port);
         lines.open_reader(reader, bus::serial_port(port, reader.baud), pace);
     }
+    let tasks = instrument_tasks(&lines.handle, plant, pace, started_us());
+    lines.instruments = tasks.open_all(|name| {
+        let other = given.iter().find(|it| it.line == name)?;
+        other.port.parse().ok()
+    });
     Ok(lines)
 }
 
-/// Checks that the wiring has every line that `--line` names.
+fn instrument_tasks<'a>(
+    handle: &'a Handle,
+    plant: &'a Plant,
+    pace: &'a Pace,
+    seed: u64,
+) -> InstrumentTasks<'a> {
+    let wiring = &plant.wiring;
+    InstrumentTasks {
+        handle,
+        wiring,
+        pace,
+        seed,
+    }
+}
+
+/// Returns the present time, which no other run has as its seed.
+fn started_us() -> u64 {
+    jiff::Timestamp::now().as_microsecond().unsigned_abs()
+}
+
+/// Checks that the wiring has every line or instrument that `--line` names, and that the link of an instrument can be
+/// read.
 ///
 /// # Errors
-/// Fails on the first named line that the wiring lacks.
+/// Fails on the first name that the wiring lacks, and on a link that cannot be read.
 pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
     let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
     let reader = plant.serial_reader.as_ref().map(|_| READER);
-    let known: Vec<&str> = wired.chain(reader).collect();
+    let instruments = plant.wiring.instruments.iter().map(|it| it.name.as_str());
+    let known: Vec<&str> = wired.chain(reader).chain(instruments).collect();
+    for LinePort { line, port } in given {
+        let is_instrument = plant.wiring.instrument_named(line).is_some();
+        if is_instrument && let Err(error) = port.parse::<LinkAddress>() {
+            return Err(anyhow!("--line {line}: {error}"));
+        }
+    }
     match given.iter().find(|it| !known.contains(&it.line.as_str())) {
         Some(LinePort { line, .. }) => Err(anyhow!(
             "--line: found \"{line}\", expected one of {}",

@@ -119,6 +119,7 @@ impl LotRunner<'_> {
             snapshots,
         };
         let ends = std::mem::take(&mut lines.ends);
+        let ends = (ends, std::mem::take(&mut lines.instruments));
         let attended = controls.attended;
         let cycle = assemble::cycle(context, prior_state, pace, ends, links, attended)?;
         let running = thread.handle.spawn(cycle.run());

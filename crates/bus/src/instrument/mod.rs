@@ -10,7 +10,6 @@ mod task;
 use super::{Direction, OpenPort, Pace, Port, Timer, escaped, open_serial_with};
 pub use log::{LinkLog, Traffic};
 pub use message::message;
-pub use task::{ProgramAnswer, ProgramRequest, Start, serve};
 use scpi::{
     Failure, Flow, Form, LinkAddress, LinkSettings, Move, Program, Question, Raw, Reader, Reply,
     ReplyError, Session, Transport,
@@ -18,6 +17,7 @@ use scpi::{
 use std::fmt::Display;
 use std::future::ready;
 use std::io;
+pub use task::{ProgramAnswer, ProgramRequest, Start, serve};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio_serial::FlowControl;
