@@ -27,6 +27,9 @@ mod snapshot;
 mod standstill;
 mod traffic;
 
+#[cfg(test)]
+mod tests;
+
 pub use instruments::InstrumentEnds;
 pub use lateness::Lateness;
 pub use snapshot::{Snapshot, snapshots};
