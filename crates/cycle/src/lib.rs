@@ -27,9 +27,6 @@ mod snapshot;
 mod standstill;
 mod traffic;
 
-#[cfg(test)]
-mod tests;
-
 pub use instruments::InstrumentEnds;
 pub use lateness::Lateness;
 pub use snapshot::{Snapshot, snapshots};
@@ -475,3 +472,6 @@ async fn next_reading(readings: &mut Option<mpsc::Receiver<Reading>>) -> Option<
         None => std::future::pending().await,
     }
 }
+
+#[cfg(test)]
+mod tests;
