@@ -42,6 +42,7 @@ pub mod wiring;
 use std::path::PathBuf;
 
 use crate::config::{ConfigError, Files, RigFile, SupplyRange, read_rig, read_world};
+use crate::scpi::circuit::Circuit;
 use crate::terminal::Plant;
 use axis::Axis;
 use bodies::Bodies;
@@ -323,6 +324,10 @@ impl Plant for World {
     fn gate_open_us(&mut self, module: &str, channel: u8) -> f64 {
         let wire = wiring::at(&self.wiring.gates, module, channel);
         wire.map_or(0.0, |w| self.fixture.gate_open_us(w.signal as usize))
+    }
+
+    fn circuit(&mut self) -> Option<&mut dyn Circuit> {
+        Some(self)
     }
 
     fn reference_clock_hz(&self) -> f64 {

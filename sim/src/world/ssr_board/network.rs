@@ -90,11 +90,11 @@ impl Network {
         goal_v + (volts - goal_v) * (-dt_s * siemens / self.farads).exp()
     }
 
-    /// Returns the time to a voltage, seconds; `None` when the node never has it.
+    /// Returns the time to another voltage, seconds; `None` when the node never comes to it.
     fn reach_s(&self, volts: f64, point_v: f64, amps: f64) -> Option<f64> {
         let goal_v = amps / self.siemens;
         let ratio = (volts - goal_v) / (point_v - goal_v);
-        (ratio >= 1.0 && ratio.is_finite())
+        (ratio > 1.0 && ratio.is_finite())
             .then(|| ratio.ln() * self.farads / self.siemens)
     }
 }
