@@ -6,10 +6,14 @@ use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
 use super::{simulated, source::Simulated, truth_file::TruthFile};
 use anyhow::anyhow;
+#[cfg(feature = "sim")]
+use bus::instrument::Opener;
 use bus::{LineLog, LineSettings, OpenPort, Pace, Reading};
 use config::{Plant, SerialReaderSettings};
 use cycle::{InstrumentEnds, LineEnds};
 use machine::handling::serial::SourceName;
+#[cfg(feature = "sim")]
+use machine::rig::instruments::InstrumentWiring;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
 use rigsim::{SharedRig, pty, wire};
@@ -167,7 +171,7 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
 ///
 /// # Errors
 /// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built.
-pub fn open(context: &LotContext, pace: &Pace, handle: &Handle) -> anyhow::Result<Lines> {
+pub async fn open(context: &LotContext<'_>, pace: &Pace, handle: &Handle) -> anyhow::Result<Lines> {
     let lines = Lines::none(handle);
     match context.source {
         RigSource::Serial(given) => serial(lines, context, given, pace),
@@ -177,7 +181,7 @@ pub fn open(context: &LotContext, pace: &Pace, handle: &Handle) -> anyhow::Resul
                 Some(live) => live.rig.clone(),
                 None => simulated::build(context.plant, source, context.order)?,
             };
-            simulated_lines(lines, context, (source, rig), pace)
+            simulated_lines(lines, context, (source, rig), pace).await
         }
     }
 }
@@ -256,9 +260,9 @@ pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
 }
 
 #[cfg(feature = "sim")]
-fn simulated_lines(
+async fn simulated_lines(
     mut lines: Lines,
-    context: &LotContext,
+    context: &LotContext<'_>,
     (source, rig): (&Simulated, SharedRig),
     pace: &Pace,
 ) -> anyhow::Result<Lines> {
@@ -268,7 +272,7 @@ fn simulated_lines(
         let line = plant.wiring.line_named(name);
         line.ok_or_else(|| anyhow!("line {name} is not wired"))
     };
-    if source.pace == super::source::SimulatedPace::Real {
+    if source.is_real() {
         let ptys = pty::serve(&rig, pty::Rates::Ignored)?;
         for (name, path) in ptys.paths() {
             let path = path.to_string_lossy();
@@ -282,7 +286,15 @@ fn simulated_lines(
             }
         }
         lines._ptys = Some(ptys);
+        let links = rig.serve_instruments().await?;
+        let tasks = instrument_tasks(&lines.handle, plant, pace, started_us());
+        lines.instruments = tasks.open_all(|name| {
+            let (_, link) = links.iter().find(|it| it.0 == name)?;
+            link.parse().ok()
+        });
     } else {
+        let tasks = instrument_tasks(&lines.handle, plant, pace, source.seed);
+        lines.instruments = plugged(&tasks, &rig)?;
         for (name, plug) in wire::plugs(&rig) {
             let mut open = bus::from_streams(move || plug.open());
             match (name == READER, reader) {
@@ -295,4 +307,22 @@ fn simulated_lines(
     }
     lines.rig = Some(rig);
     Ok(lines)
+}
+
+/// Starts the task of each instrument of a simulated rig in virtual time.
+#[cfg(feature = "sim")]
+fn plugged(tasks: &InstrumentTasks, rig: &SharedRig) -> anyhow::Result<Vec<InstrumentEnds>> {
+    let plugs = rig.instrument_plugs();
+    let open = |instrument| {
+        let InstrumentWiring { name, link, .. } = tasks.wiring.instrument(instrument);
+        let place = link.place();
+        let here = |it: &&(String, _)| it.0 == *name || (link.gpib.is_some() && it.0 == place);
+        let (_, plug) = plugs.iter().find(here).ok_or_else(|| {
+            anyhow!("instrument {name}: found none on the simulated rig, expected one at {link}")
+        })?;
+        let plug = plug.clone();
+        let opener = Opener::Streams(bus::from_streams(move || plug.open()));
+        Ok(tasks.open(instrument, link, opener))
+    };
+    tasks.wiring.instrument_ids().map(open).collect()
 }

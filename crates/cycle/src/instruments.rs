@@ -16,6 +16,8 @@ use units::{RigTime, Span};
 
 /// Longest time by which the outputs of the modules precede the safe programs of the instruments.
 const SAFE_AFTER: Span = Span::ms(500);
+/// Largest number of queries that wait for one instrument; a job has far fewer.
+const MAX_QUEUE: usize = 1_000;
 /// Tries of a safe program.
 const SAFE_TRIES: u8 = 2;
 
@@ -136,7 +138,9 @@ impl Instruments {
 
     /// Appends a query of the measuring job.
     pub fn queue(&mut self, instrument: Instrument, query: OpenQuery) {
-        self.slots[instrument.index()].queue.push_back(query);
+        let queue = &mut self.slots[instrument.index()].queue;
+        queue.push_back(query);
+        assert!(queue.len() <= MAX_QUEUE, "a queue grows without end");
     }
 
     /// Removes the queries that wait for an instrument, because one before them failed; returns their positions.
@@ -178,6 +182,10 @@ impl Instruments {
             Safety::Due(_, tries) => tries.saturating_sub(1),
             Safety::Safe | Safety::MayBeOn => 0,
         };
+        assert!(
+            matches!(*safety, Safety::Due(..)),
+            "the end of a safe program that was not due"
+        );
         *safety = match (is_safe, left) {
             (true, _) => Safety::Safe,
             (false, 0) => Safety::MayBeOn,

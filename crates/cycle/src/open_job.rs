@@ -60,6 +60,7 @@ impl OpenJob {
         at: RigTime,
         result: Result<Delivered, Message>,
     ) -> Option<JobDone> {
+        assert!(position < self.delivered.len(), "a query of another job");
         let at = self.last.max(at);
         match result {
             Ok(delivered) => {

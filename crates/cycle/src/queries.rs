@@ -58,6 +58,10 @@ impl Cycle {
         purpose: Purpose,
         answer: ProgramAnswer,
     ) {
+        assert!(
+            answer.answered_at <= self.pace.now(),
+            "a program ends in the future"
+        );
         match purpose {
             Purpose::Prepare => self.prepared(instrument, answer),
             Purpose::Query(at, program) => {

@@ -80,7 +80,7 @@ impl LotRunner<'_> {
         controls
             .view
             .send_modify(|view| view.host = thread.rights.clone());
-        let mut lines = links::open(context, &pace, &thread.handle)?;
+        let mut lines = links::open(context, &pace, &thread.handle).await?;
         let traces = Traces::new(self.db, context.plant, &lines.logs);
         controls.show_traffic(&traces);
         let (recorder, prior_state) = Recorder::open(self.db, context)?;
