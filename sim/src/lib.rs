@@ -32,6 +32,7 @@ mod error;
 pub mod fault;
 mod files;
 pub mod fingerprint;
+mod instruments;
 pub mod journal;
 pub mod line;
 pub mod module;

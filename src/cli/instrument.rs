@@ -10,7 +10,7 @@ use app::exit::Exit;
 use app::instrument::message;
 use bus::Pace;
 use bus::instrument::{Link, Opener};
-use config::{ConfigError, Folder, instrument_names, load_instrument};
+use config::{ConfigError, Folder, folder_of_profiles, load_instrument};
 use scpi::{
     Failure, Flow, Framing, LinkAddress, LinkSettings, Profile, Reply, Terminator, Transport,
 };
@@ -112,10 +112,7 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
 /// Returns the folder with the profiles: `folder` if it has any, otherwise the profiles inside the program.
 fn profiles(folder: &Folder) -> Result<Folder, ConfigError> {
     folder.check_exists()?;
-    Ok(match instrument_names(folder).is_empty() {
-        true => Folder::built_in(),
-        false => folder.clone(),
-    })
+    Ok(folder_of_profiles(folder))
 }
 
 fn profile(folder: &Folder, name: Option<&String>) -> Result<Option<Profile>, ConfigError> {

@@ -1,11 +1,11 @@
-//! The files of `config/`, compiled into the program.
+//! The files of `config/` and of the rigs below it, compiled into the program.
 
 /// Lists files of `config/` with their texts.
 macro_rules! files {
     ($($name:literal,)*) => { &[$(($name, include_str!(concat!("../../../config/", $name)))),*] };
 }
 
-/// Name and text of every file of `config/`; a test compares the names with the folder.
+/// Name and text of every file of `config/` without `rigs`; a test compares the names with the folder.
 pub(super) const BUILT_IN: &[(&str, &str)] = files![
     "README.md",
     "card.toml",
@@ -32,3 +32,22 @@ pub(super) const BUILT_IN: &[(&str, &str)] = files![
     "scene.toml",
     "sim.toml",
 ];
+
+/// Files of one rig, by name.
+type Rig = (&'static str, &'static [(&'static str, &'static str)]);
+
+/// Lists files of `config/rigs/NAME` with their texts.
+macro_rules! rig {
+    ($rig:literal: $($name:literal,)*) => {
+        ($rig, &[$(($name, include_str!(concat!("../../../config/rigs/", $rig, "/", $name)))),*])
+    };
+}
+
+/// The rigs of `config/rigs`, each a configuration of its own; a test compares the names with the folders.
+pub(super) const RIGS: &[Rig] = &[rig!["ssr":
+    "card.toml",
+    "recipes/ssr-dc-60v-3a.toml",
+    "rig.toml",
+    "scene.toml",
+    "sim.toml",
+]];

@@ -3,7 +3,7 @@
 //! Everything that reads or revises a configuration does it through [`Folder`]. A file has the name that it has in
 //! `config/`, such as `recipes/jzc-22f-012.toml`.
 
-use super::built_in::BUILT_IN;
+use super::built_in::{BUILT_IN, RIGS};
 use super::check::File;
 use super::error::ConfigError;
 use std::collections::BTreeMap;
@@ -45,12 +45,27 @@ impl From<&Path> for Folder {
 impl Folder {
     /// Returns the files of `config/` that this program was built with.
     pub fn built_in() -> Self {
+        Self::in_memory(BUILT_IN)
+    }
+
+    /// Returns the files of `config/rigs/NAME` that this program was built with; `None` for a name that no rig has.
+    pub fn built_in_rig(name: &str) -> Option<Self> {
+        let rig = RIGS.iter().find(|(known, _)| *known == name);
+        rig.map(|(_, files)| Self::in_memory(files))
+    }
+
+    /// Yields the names of the rigs that this program was built with, beside that of `config/` itself.
+    pub fn built_in_rigs() -> impl Iterator<Item = &'static str> {
+        RIGS.iter().map(|(name, _)| *name)
+    }
+
+    fn in_memory(files: &[(&str, &str)]) -> Self {
         let kept = |(name, text): &(&str, &str)| {
             let (text, saved_at) = ((*text).to_owned(), None);
             ((*name).to_owned(), Kept { text, saved_at })
         };
         Self::Memory(Memory {
-            files: Arc::new(Mutex::new(BUILT_IN.iter().map(kept).collect())),
+            files: Arc::new(Mutex::new(files.iter().map(kept).collect())),
             changing: Arc::default(),
         })
     }

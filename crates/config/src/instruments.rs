@@ -5,7 +5,10 @@ use super::error::ConfigError;
 use super::folder::Folder;
 use super::keys;
 use machine::rig::fault::Fault;
+use machine::rig::instruments::{Profiles, unknown_profile};
+use machine::rig::settings::{InstrumentSettings, RigSettings};
 use scpi::Profile;
+use std::sync::Arc;
 
 /// Reads and checks the profile `name` of a configuration.
 ///
@@ -29,9 +32,39 @@ pub(super) fn read_instrument(folder: &Folder, name: &str) -> Result<File, Confi
     folder.file(&format!("instruments/{name}.toml"), "an instrument profile")
 }
 
-/// Returns the names of all profiles, sorted; none when the folder cannot be read.
+/// Returns the names of all profiles of a folder, sorted; none when the folder cannot be read.
 pub fn instrument_names(folder: &Folder) -> Vec<String> {
     folder.stems("instruments")
+}
+
+/// Returns the folder whose profiles a configuration uses: `folder`, or the copy in the program when it has none.
+pub fn folder_of_profiles(folder: &Folder) -> Folder {
+    match instrument_names(folder).is_empty() {
+        true => Folder::built_in(),
+        false => folder.clone(),
+    }
+}
+
+/// Loads the profiles that `rig` names.
+pub(super) fn load_profiles(
+    folder: &Folder,
+    rig: &File,
+    settings: &RigSettings,
+) -> Result<Profiles, ConfigError> {
+    let folder = folder_of_profiles(folder);
+    let known = instrument_names(&folder);
+    let mut profiles = Profiles::new();
+    for (name, InstrumentSettings { profile, .. }) in &settings.instrument {
+        if !known.contains(profile) {
+            let fault = unknown_profile(name, profile, known.iter().map(String::as_str));
+            return Err(rig.locate(&fault));
+        }
+        if !profiles.contains_key(profile) {
+            let loaded = load_instrument(&folder, profile)?;
+            profiles.insert(profile.clone(), Arc::new(loaded));
+        }
+    }
+    Ok(profiles)
 }
 
 pub(super) fn parse_instrument(file: File, name: &str) -> Result<Profile, ConfigError> {

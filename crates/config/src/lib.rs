@@ -63,7 +63,7 @@ pub use error::ConfigError;
 pub use faults::{ConfigFaults, check_all};
 pub use folder::{Folder, Memory};
 pub use init::{InitError, init};
-pub use instruments::{instrument_names, load_instrument};
+pub use instruments::{folder_of_profiles, instrument_names, load_instrument};
 pub use lot::prompts_of_lots;
 pub use overview::overview;
 pub use plant::{HistorySettings, Plant, SerialReaderSettings};

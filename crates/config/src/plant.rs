@@ -3,6 +3,7 @@
 use super::check::File;
 use super::error::ConfigError;
 use super::folder::Folder;
+use super::instruments::load_profiles;
 use super::keys;
 use super::lot::{check_pictures, check_reader, load_lot};
 use super::recipes::recipe_file;
@@ -108,8 +109,9 @@ impl Plant {
         let rig = folder.file("rig.toml", "the wiring of the rig")?;
         let settings: RigSettings = rig.settings(keys::rig::FILE)?;
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
-        let wiring =
-            Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
+        let profiles = load_profiles(folder, &rig, &settings)?;
+        let wiring = Wiring::resolve_with(&settings, dut::FIXTURES, &profiles);
+        let wiring = wiring.map_err(|fault| rig.locate(&fault))?;
         let reference_parts = match &gauge.calibration.reference_file {
             Some(name) => load_reference_parts(folder, name)?,
             None => ReferenceSet::default(),

@@ -7,6 +7,7 @@ mod folder;
 mod instruments;
 mod plant;
 mod revision;
+mod rig_instruments;
 mod wrong_recipes;
 
 use super::check::File;

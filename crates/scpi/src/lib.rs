@@ -37,8 +37,9 @@
 //! | `reply.rs`, `status.rs` | numbers, strings, blocks; error queue, event register, identity |
 //! | `reader.rs` | cuts bytes into replies, with a bound on each |
 //! | `program.rs`, `profile.rs` | programs; instrument profiles that build them |
-//! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; the run of a program; numbers that prove the step |
-//! | `framing.rs`, `address.rs`, `settings.rs` | terminators and adapters; addresses; times |
+//! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; a program on its way; numbers that prove the step |
+//! | `framing.rs`, `address.rs`, `settings.rs` | ends of messages and adapters; places; times |
+//! | `waveform.rs` | samples of a digitizer |
 //! | `failure.rs` | every reason why there is no value |
 
 mod address;
@@ -53,6 +54,7 @@ mod run;
 mod session;
 mod settings;
 mod status;
+mod waveform;
 
 #[cfg(test)]
 mod tests;
@@ -67,6 +69,7 @@ pub use reply::{BLOCK_LIMIT, Form, LINE_LIMIT, Raw, Reply, ReplyError, number, s
 pub use session::{Move, Question, Session};
 pub use settings::{Echo, ExpectedIdentity, LinkSettings};
 pub use status::{ErrorClass, ErrorEntry, Identity, StandardEvents};
+pub use waveform::{Dialect, Samples, SamplesError, samples};
 
 /// Makes `cargo test` compile the example of the README.
 #[cfg(doctest)]

@@ -1,11 +1,12 @@
 //! Instrument profiles: what an instrument is and which commands carry out a program, as a file states it. The crate
-//! `config` checks the other keys (class, dialect, accuracy), which a link does not need.
+//! `config` checks the keys; a link needs neither class nor accuracy.
 
 use super::address::{Flow, LinkAddress, Transport};
 use super::framing::{Framing, Terminator};
 use super::program::{Program, Step};
 use super::reply::{BLOCK_LIMIT, Form};
 use super::settings::{Echo, ExpectedIdentity, LinkSettings};
+use super::waveform::Dialect;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -16,6 +17,8 @@ use units::Span;
 pub struct Profile {
     /// Name of the profile: that of its file.
     pub name: String,
+    /// How the instrument codes waveforms.
+    pub dialect: Dialect,
     /// Beginnings of the first and the second field of `*IDN?`.
     #[serde(flatten)]
     pub identity: ExpectedIdentity,

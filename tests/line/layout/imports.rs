@@ -18,6 +18,7 @@ const PURE: &[(&str, &[&str])] = &[
         &[
             "dcon",
             "lpm",
+            "scpi",
             "serde",
             "serde_json",
             "statrs",
@@ -57,7 +58,9 @@ const REAL_TIME: &[(&str, &[&str])] = &[
     ),
     (
         "cycle",
-        &["bus", "dcon", "jiff", "machine", "texts", "tokio", "units"],
+        &[
+            "bus", "dcon", "jiff", "machine", "scpi", "texts", "tokio", "units",
+        ],
     ),
 ];
 

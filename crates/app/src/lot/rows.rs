@@ -7,6 +7,7 @@ use machine::gauge::{Limit, Reading};
 use machine::handling::ledger::PartRole;
 use machine::handling::output::Judged;
 use machine::instrument::trace::Trace;
+use machine::rig::wiring::Wiring;
 use serde_json::{Map, Value, json};
 use units::RigTime;
 
@@ -48,21 +49,23 @@ pub fn part(context: &LotContext, judged: &Judged, reference_count: u64) -> Part
             .collect(),
         curves: match judged.verdict {
             Verdict::Pass => Vec::new(),
-            Verdict::Fail(_) | Verdict::Void(_) => curves(&judged.record.trace, at),
+            Verdict::Fail(_) | Verdict::Void(_) => {
+                curves(&judged.record.trace, &context.plant.wiring, at)
+            }
         },
     }
 }
 
 /// Returns the curves of the test, one per signal, in the order of the signals' first samples.
-fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
+fn curves(trace: &Trace, wiring: &Wiring, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
     let mut curves: Vec<CurveRecord> = Vec::new();
     for look in trace.samples() {
         let sample = (at(look.at), Some(look.value).filter(|it| it.is_finite()));
-        let name = look.signal.name;
+        let name = look.signal.stored_name(wiring);
         match curves.iter_mut().find(|curve| curve.signal == name) {
             Some(curve) => curve.samples.push(sample),
             None => curves.push(CurveRecord {
-                signal: name.to_owned(),
+                signal: name,
                 unit: look.signal.unit.to_owned(),
                 step: look.signal.step,
                 samples: vec![sample],

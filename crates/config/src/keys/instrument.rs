@@ -36,7 +36,7 @@ const ACCURACY: &[Key] = keys! {
 pub const FILE: &[Key] = keys! {
     key("name", Form::Text, "scpi", "name of the profile, as the file is called");
     key("class", Form::Choice(&["smu", "dmm", "ac_source", "digitizer", "pulse_source"]), "nothing yet", "kind of instrument");
-    key("dialect", Form::Choice(&["scpi", "rigol", "keysight"]), "nothing yet", "how waveforms are coded; `scpi` without waveforms");
+    key("dialect", Form::Choice(&["scpi", "rigol", "keysight"]), "scpi", "how waveforms are coded; `scpi` without waveforms");
     key("makers", Form::List(&Form::Text), "scpi", "beginnings of the first field of `*IDN?`, one of which must fit");
     key("models", Form::List(&Form::Text), "scpi", "beginnings of its second field, one of which must fit");
     key("timeout_ms", whole(1, 60_000, "ms"), "scpi", "time until the reply to a query");

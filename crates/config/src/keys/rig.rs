@@ -10,7 +10,7 @@ use machine::form::{Form, Key, Points, key, optional};
 use machine::rig::point::{DigitalIn, DigitalOut, Fixture};
 use machine::rig::stroke::ActuatorKey;
 use measuring::{ACCURACY, CALIBRATION};
-use modules::{BUS, HISTORY, LINE, MODULE, RECIPES, SAFETY, SERIAL_READER};
+use modules::{BUS, HISTORY, INSTRUMENT, LINE, MODULE, RECIPES, SAFETY, SERIAL_READER};
 use points::{ACTUATOR, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE};
 
 /// Returns the form of points that only some kinds of device use: none is required, and `may` returns the allowed
@@ -69,6 +69,7 @@ pub const FILE: &[Key] = keys! {
     optional("serial_reader", Form::Table(SERIAL_READER), "bus, station",
         "code reader at the pocket, on a line of its own; sends a line of text per part by itself");
     key("module", Form::Named(&Form::Table(MODULE)), "rig", "modules by name");
+    optional("instrument", Form::Named(&Form::Table(INSTRUMENT)), "rig", "SCPI instruments by name");
     optional("analog_in", of_kinds(analog_in, &Form::Table(ANALOG_IN)), "rig", "analog inputs by point");
     optional("temperature", of_kinds(temperature, &Form::Table(CHANNEL)), "rig", "thermometers by point");
     optional("analog_out", of_kinds(analog_out, &Form::Table(ANALOG_OUT)), "rig", "analog outputs by point");

@@ -3,7 +3,7 @@
 use super::revision::files;
 use crate::{Change, Folder, InitError, Plant, check_all, init, load_recipe, revise, revision};
 use serde_json::json;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -24,13 +24,20 @@ fn texts(folder: &Path) -> BTreeMap<String, String> {
     all.map(|(path, text)| (within(path), text)).collect()
 }
 
+/// Returns the files of `config/` itself, without earlier revisions and without the rigs below it.
+fn default_rig() -> BTreeMap<String, String> {
+    let mut files = texts(&config());
+    let other = ["recipes/revisions/", "rigs/"];
+    files.retain(|name, _| !other.iter().any(|it| name.starts_with(it)));
+    files
+}
+
 #[test]
 fn every_file_of_the_configuration_is_compiled_in() {
     let Folder::Memory(memory) = Folder::built_in() else {
         unreachable!("files in memory")
     };
-    let mut repository = texts(&config());
-    repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
+    let repository = default_rig();
     let names: Vec<&String> = repository.keys().collect();
     assert_eq!(
         memory.texts().keys().collect::<Vec<_>>(),
@@ -38,6 +45,24 @@ fn every_file_of_the_configuration_is_compiled_in() {
         "list the files in crates/config/src/built_in.rs"
     );
     assert_eq!(memory.texts(), repository);
+}
+
+#[test]
+fn every_rig_of_the_repository_is_compiled_in() {
+    let entries = fs::read_dir(config().join("rigs")).unwrap();
+    let names = entries.map(|it| it.unwrap().file_name().into_string().unwrap());
+    let names: BTreeSet<String> = names.collect();
+    let known: BTreeSet<String> = Folder::built_in_rigs().map(str::to_owned).collect();
+    assert_eq!(known, names);
+    for name in names {
+        let Some(Folder::Memory(memory)) = Folder::built_in_rig(&name) else {
+            unreachable!("files in memory")
+        };
+        let mut repository = texts(&config().join("rigs").join(&name));
+        repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
+        assert_eq!(memory.texts(), repository, "{name}");
+    }
+    assert!(Folder::built_in_rig("none").is_none());
 }
 
 #[test]
@@ -116,9 +141,7 @@ fn init_writes_every_file_to_new_and_empty_directories() {
     fs::create_dir(&empty).unwrap();
     for dir in [&new, &empty] {
         init(dir).unwrap();
-        let mut repository = texts(&config());
-        repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
-        assert_eq!(texts(dir), repository);
+        assert_eq!(texts(dir), default_rig());
         check_all(&Folder::Directory(dir.clone())).unwrap();
     }
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();

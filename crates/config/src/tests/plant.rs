@@ -26,7 +26,7 @@ impl Copy {
     }
 
     /// Returns the message with which loading fails, without the path of the folder.
-    fn refused(&self) -> String {
+    pub fn refused(&self) -> String {
         Plant::load(&self.0.path().into())
             .unwrap_err()
             .to_string()

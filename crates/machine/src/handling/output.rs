@@ -19,7 +19,7 @@ pub struct NestJob {
 }
 
 /// Completion of a [`NestJob`].
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct NestDone {
     /// Nest that requested the job.
     pub nest: NestId,

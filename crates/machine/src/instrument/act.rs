@@ -4,6 +4,7 @@
 //! can therefore be read, printed and replayed, and no stage occupies a bus line. Acts name wired points and are
 //! independent of the kind of device; the wiring turns them into transactions.
 
+use super::query::{Delivered, Query};
 use super::readings::{Readings, Unread};
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Point};
@@ -71,8 +72,10 @@ pub enum Act {
     Ramp(Vec<(AnalogOutput, Volt)>),
     /// Reads points.
     Read(Read),
-    /// Enables these inputs of their converters and no others. This writes EEPROM, so only a calibration does it,
-    /// before a lot.
+    /// Runs programs on SCPI instruments: those of different instruments at the same time, those of one instrument in their
+    /// order.
+    Query(Vec<Query>),
+    /// Enables only these inputs of their converters; only before a lot.
     Mask(Vec<AnalogInput>),
     /// Stores the current time for [`Act::WaitSinceMark`].
     Mark,
@@ -105,7 +108,7 @@ pub enum Act {
     },
 }
 
-/// A task that the runner gives to the bus lines.
+/// A task for the lines and the instruments.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Job {
     /// See [`Act::Set`].
@@ -116,17 +119,32 @@ pub enum Job {
     Read(Vec<Point>),
     /// See [`Read::Restarts`].
     Restarts,
-    /// See [`Act::Mask`].
+    /// See [`Act::Query`].
+    Query(Vec<Query>),
+    /// Sets channel masks of converters; only before a lot.
     Mask(Vec<AnalogInput>),
 }
 
 /// Completion of a [`Job`].
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct JobDone {
     /// Time at which the last reply of the job was complete.
     pub at: RigTime,
-    /// Why the job failed (line, address, command, number of tries); `None` after a success.
+    /// Reason for a failure (line, address, command, number of tries; or instrument, program); none after a success.
     pub trouble: Option<Message>,
+    /// What each query of a [`Job::Query`] has delivered; empty for other jobs, and after a failure.
+    pub delivered: Vec<Delivered>,
+}
+
+impl JobDone {
+    /// Returns the end of a job without queries.
+    pub fn new(at: RigTime, trouble: Option<Message>) -> Self {
+        Self {
+            at,
+            trouble,
+            delivered: Vec::new(),
+        }
+    }
 }
 
 /// State of a runner after a step.
@@ -239,7 +257,7 @@ impl Runner {
             }
             self.pending = false;
             self.since = done.at;
-            if let Err(trouble) = self.keep(image, now) {
+            if let Err(trouble) = self.keep(&done.delivered, image, now) {
                 return RunnerState::Trouble(Message::detail("unread", trouble));
             }
         }
@@ -250,6 +268,7 @@ impl Runner {
                     return self.request(Job::Level(outputs.clone()));
                 }
                 Act::Read(read) => return self.request(read.job()),
+                Act::Query(queries) => return self.request(Job::Query(queries.clone())),
                 Act::Mask(inputs) => return self.request(Job::Mask(inputs.clone())),
                 Act::Until { point, word, .. } => {
                     let word = word.inputs.iter().copied();
@@ -332,6 +351,7 @@ impl Runner {
                 | Act::Ramp(_)
                 | Act::Read(_)
                 | Act::Agree { .. }
+                | Act::Query(_)
                 | Act::Mask(_),
             ) => {
                 spent.bus += took;
@@ -351,9 +371,8 @@ impl Runner {
         self.began = self.since;
     }
 
-    /// Stores the readings of the finished job, and moves to the next act unless the present one still awaits a
-    /// condition.
-    fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), Unread> {
+    /// Stores the readings of the finished job, and moves on unless it still awaits a condition.
+    fn keep(&mut self, delivered: &[Delivered], image: &Image, now: RigTime) -> Result<(), Unread> {
         match self.current.clone() {
             Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,
             Some(Act::Until {
@@ -391,6 +410,10 @@ impl Runner {
             Some(Act::Set(outputs)) => {
                 let wiring = image.wiring();
                 self.readings.trace.switched(wiring, &outputs, self.since);
+            }
+            Some(Act::Query(queries)) => {
+                let at = self.since;
+                self.readings.keep_delivered(&queries, delivered, at);
             }
             Some(Act::Level(outputs)) => self.commanded(&outputs, image),
             Some(Act::Ramp(outputs)) => {

@@ -1,7 +1,8 @@
-//! Instruments as the procedure of a test uses them: acts, the runner that carries them out, their readings, and the
-//! trace of all samples, as recorded and as stored.
+//! Instruments as a procedure uses them: acts, their runner, queries of SCPI instruments, readings, and the trace of all
+//! samples, as recorded and as stored.
 
 pub mod act;
 pub mod curve;
+pub mod query;
 pub mod readings;
 pub mod trace;

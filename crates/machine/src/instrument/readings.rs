@@ -1,6 +1,7 @@
 //! The readings of a stage, by point, in order of arrival.
 
 use super::act::{Read, Word};
+use super::query::{Delivered, Instrument, Query};
 use super::trace::Trace;
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, DigitalInput, GatedCounter, Point, Thermometer};
@@ -14,6 +15,7 @@ pub struct Readings {
     states: Vec<(DigitalInput, bool)>,
     samples: Vec<Sample>,
     counts: Vec<CountSample>,
+    delivered: Vec<(Instrument, Delivered)>,
     /// Outcomes of [`Act::Until`](super::act::Act::Until): true when the point became active.
     pub seen: Vec<bool>,
     /// All samples, and the values commanded to outputs and sources.
@@ -54,6 +56,13 @@ impl Readings {
         self.counts.iter().filter(here)
     }
 
+    /// Yields what the programs of an instrument have delivered, in order of arrival.
+    pub fn delivered(&self, instrument: Instrument) -> impl Iterator<Item = &Delivered> {
+        let here = self.delivered.iter();
+        let here = here.filter(move |(of, _)| *of == instrument);
+        here.map(|(_, delivered)| delivered)
+    }
+
     fn samples_of(&self, point: AnalogPoint) -> impl Iterator<Item = &Sample> {
         self.samples.iter().filter(move |it| it.point == point)
     }
@@ -88,6 +97,20 @@ impl Readings {
         assert_eq!(word.inputs.len(), states.len(), "a state for each input");
         let states = states.iter().copied();
         self.states.extend(word.inputs.iter().copied().zip(states));
+    }
+
+    /// Stores what each query of a job has delivered; `at` is the time at which the last one ended.
+    pub(super) fn keep_delivered(
+        &mut self,
+        queries: &[Query],
+        delivered: &[Delivered],
+        at: RigTime,
+    ) {
+        assert_eq!(queries.len(), delivered.len(), "a delivery for each query");
+        for (query, delivered) in queries.iter().zip(delivered) {
+            self.trace.delivered(query, delivered, at);
+            self.delivered.push((query.instrument, delivered.clone()));
+        }
     }
 
     fn take_point(&mut self, point: Point, image: &Image, now: RigTime) -> Result<(), Unread> {

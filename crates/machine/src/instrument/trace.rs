@@ -1,10 +1,11 @@
 //! The trace of a test, sample by sample: the evidence kept for a rejected part.
 //!
-//! The trace holds analog samples and counts as read, the values commanded to sources and to the traced outputs of a
-//! kind, and words of inputs. A signal of bits has one sample at each change and one at the last poll before it, so
-//! that polling for many milliseconds adds only two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of
-//! the default recipe has some 150.
+//! The trace holds analog samples and counts as read, numbers of instruments, the values commanded to sources and to the
+//! traced outputs of a kind, and words of inputs. A bit signal has one sample at each change and one at the last poll before it, so that
+//! polling for many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of the
+//! default recipe has some 150.
 
+use super::query::{Delivered, Instrument, Query};
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};
 use crate::rig::sample::{CountSample, Quality, Sample};
 use crate::rig::wiring::Wiring;
@@ -13,11 +14,16 @@ use units::{RigTime, Volt};
 /// Greatest number of samples of one test, all signals together.
 pub const MAX_SAMPLES: usize = 1_000;
 
+/// Most numbers of one program that the trace keeps.
+pub const MAX_NUMBERS: usize = 16;
+
 /// A signal of the trace, as its point declares it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Signal {
-    /// Name of its point.
+    /// Name of its point, or of the program of an instrument.
     pub name: &'static str,
+    /// Instrument whose program gives the values; `None` for a point.
+    pub instrument: Option<Instrument>,
     /// Unit of its values; empty for bits and counts.
     pub unit: &'static str,
     /// Resolution of stored values: a tenth of a step of the converter, or less.
@@ -31,6 +37,7 @@ impl Signal {
     pub const fn source(name: &'static str) -> Self {
         Self {
             name,
+            instrument: None,
             unit: "V",
             step: 1e-5,
             changes_only: false,
@@ -41,6 +48,7 @@ impl Signal {
     pub const fn input(quantity: Quantity) -> Self {
         Self {
             name: quantity.name,
+            instrument: None,
             unit: quantity.unit,
             step: quantity.step,
             changes_only: false,
@@ -51,16 +59,37 @@ impl Signal {
     pub const fn count(name: &'static str) -> Self {
         Self {
             name,
+            instrument: None,
             unit: "",
             step: 1.0,
             changes_only: false,
         }
     }
 
-    /// Returns the signal of an output (0 off, 1 on) or of a word of inputs, one bit each.
+    /// Returns the signal of the numbers that a program of an instrument delivers.
+    pub const fn program(instrument: Instrument, name: &'static str) -> Self {
+        Self {
+            name,
+            instrument: Some(instrument),
+            unit: "",
+            step: 1e-12,
+            changes_only: false,
+        }
+    }
+
+    /// Returns the name under which the history keeps the signal: that of the point, or `INSTRUMENT.PROGRAM`.
+    pub fn stored_name(&self, wiring: &Wiring) -> String {
+        match self.instrument {
+            None => self.name.to_owned(),
+            Some(instrument) => format!("{}.{}", wiring.instrument(instrument).name, self.name),
+        }
+    }
+
+    /// Returns the signal of an output (0 off, 1 on) or of a word of inputs, a bit each.
     pub const fn bits(name: &'static str) -> Self {
         Self {
             name,
+            instrument: None,
             unit: "",
             step: 1.0,
             changes_only: true,
@@ -130,6 +159,20 @@ impl Trace {
         }
         let value = sample.good().unwrap_or(f64::NAN);
         self.add(Signal::input(quantity), sample.origin.at, value);
+    }
+
+    /// Adds the numbers of a program; a list of more than [`MAX_NUMBERS`], such as a ramp, and a waveform leave none.
+    pub(super) fn delivered(&mut self, query: &Query, delivered: &Delivered, at: RigTime) {
+        if delivered.numbers.len() > MAX_NUMBERS {
+            return;
+        }
+        for number in &delivered.numbers {
+            self.add(
+                Signal::program(query.instrument, query.program),
+                at,
+                *number,
+            );
+        }
     }
 
     /// Adds a count, unless the trace has it already.

@@ -6,6 +6,7 @@
 //! - [`settings`], [`model`] and [`wiring`]: the wiring of each point. [`resolve`], `declared`, `modules`, [`axis`]
 //!   (with each [`bin`]) and [`reaction`] resolve and check `rig.toml`; a [`fault::Fault`] names a setting that does
 //!   not fit.
+//! - [`instruments`]: the SCPI instruments with their profiles and links.
 //! - [`commission`]: checks that the modules on the lines are those of `rig.toml`.
 //! - [`query`], [`sample`], [`image`]: commands that read points, and the values read, with their times.
 //! - [`drive`], [`level`], [`supply`]: values of the outputs, and the ranges of the supply's amplifier. [`drive`]
@@ -21,6 +22,7 @@ mod declared;
 pub mod drive;
 pub mod fault;
 pub mod image;
+pub mod instruments;
 pub mod level;
 pub mod model;
 mod modules;

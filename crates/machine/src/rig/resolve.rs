@@ -3,12 +3,13 @@
 //! The resolution checks whatever involves more than one key: every point is one of the machine, one that a kind of
 //! device declares, or the beam of a bin; it names an existing module, a channel of it, and terminals of the right
 //! kind; no two points share a terminal and no two modules an address on one line; a module has exactly the settings of
-//! its model; the axis has one point for each place; the codes of the supply ranges differ; the emergency stop acts in
-//! time.
+//! its model; the axis has one point for each place; the ranges of the supply have codes of their own; an
+//! instrument has a profile and a link of its own; the emergency stop acts in time.
 
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
 use super::fault::Fault;
+use super::instruments::{Profiles, resolve_instruments};
 use super::model::Terminals;
 use super::modules::resolve_modules;
 use super::point::{DigitalIn, DigitalOut, Fixture, Quantity, Switch};
@@ -23,9 +24,18 @@ use dcon::Channel;
 use std::collections::BTreeMap;
 
 impl Wiring {
-    /// Resolves all names, checks the whole wiring and returns the first fault. `fixtures`: points that the kinds of
-    /// device declare; the rig may lack any of them.
+    /// Resolves all names of a rig without instruments, checks the whole wiring and returns the first fault. `fixtures`:
+    /// points that the kinds of device declare; the rig may lack any of them.
     pub fn resolve(settings: &RigSettings, fixtures: &[Fixture]) -> Result<Self, Fault> {
+        Self::resolve_with(settings, fixtures, &Profiles::new())
+    }
+
+    /// Resolves as [`Wiring::resolve`] does a rig whose instruments have these profiles.
+    pub fn resolve_with(
+        settings: &RigSettings,
+        fixtures: &[Fixture],
+        profiles: &Profiles,
+    ) -> Result<Self, Fault> {
         let lines: Vec<Line> = settings
             .line
             .iter()
@@ -38,6 +48,7 @@ impl Wiring {
             .collect();
         check_ports(&lines)?;
         let modules = resolve_modules(settings, &lines)?;
+        let instruments = resolve_instruments(&settings.instrument, &settings.line, profiles)?;
         let inputs = InputNames::of(settings, fixtures);
         let axis = AxisTable::resolve(&settings.axis, &settings.bin, |name| inputs.beam(name))?;
         inputs.check(settings)?;
@@ -98,6 +109,7 @@ impl Wiring {
             supply_range: None,
             lines,
             modules,
+            instruments,
             bus: settings.bus,
             safety: settings.safety,
             strokes,

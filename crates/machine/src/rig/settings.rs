@@ -16,6 +16,9 @@ pub struct RigSettings {
     pub safety: SafetySettings,
     /// Modules by name.
     pub module: BTreeMap<String, ModuleSettings>,
+    /// SCPI instruments by name; none on many rigs.
+    #[serde(default)]
+    pub instrument: BTreeMap<String, InstrumentSettings>,
     /// Analog inputs by point name.
     #[serde(default)]
     pub analog_in: BTreeMap<String, AnalogInSettings>,
@@ -105,6 +108,15 @@ pub struct ModuleSettings {
     pub safe: Option<f64>,
     /// Safe value of digital outputs, four hexadecimal digits.
     pub safe_outputs: Option<String>,
+}
+
+/// One SCPI instrument of `config/rig.toml`.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct InstrumentSettings {
+    /// Name of its profile.
+    pub profile: String,
+    /// Where it is, in a form of [`scpi::LinkAddress`].
+    pub link: String,
 }
 
 /// An analog input point.

@@ -4,6 +4,7 @@
 //! no two modules of a line share an address, and the reaction to the emergency stop is as short as the plant demands.
 
 use super::axis::AxisTable;
+use super::instruments::InstrumentWiring;
 use super::model::Model;
 use super::point::{
     AnalogInput, AnalogOutput, DigitalIn, DigitalInput, DigitalOut, DigitalOutput, GatedCounter,
@@ -107,6 +108,8 @@ pub struct Wiring {
     pub lines: Vec<Line>,
     /// Modules by line and address.
     pub modules: Vec<Module>,
+    /// SCPI instruments in alphabetical order.
+    pub instruments: Vec<InstrumentWiring>,
     /// Times and counts that hold for every line.
     pub bus: BusSettings,
     /// Demands of the plant on the emergency stop.

@@ -1,4 +1,4 @@
-//! Keys of serial lines and modules, and of the settings that every line shares.
+//! Keys of serial lines, modules and instruments, and of the settings that every line shares.
 
 use machine::form::{Form, Key, above_zero, from_to, key, optional, whole};
 use machine::rig::model::Model;
@@ -60,4 +60,10 @@ pub(super) const MODULE: &[Key] = keys! {
     optional("watchdog", Form::Flag, "rig", "whether the host watchdog must be on; needed with outputs");
     optional("safe", from_to(0.0, 10.0, "V"), "rig", "safe value of a 7021 at its terminal; there needed");
     optional("safe_outputs", Form::Hex(4), "rig", "safe value of digital outputs, bit n = channel n; needed with them");
+};
+
+pub(super) const INSTRUMENT: &[Key] = keys! {
+    key("profile", Form::Text, "rig", "name of its profile, a file of instruments/");
+    key("link", Form::Text, "bus",
+        "tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDRESS or gpib-serial:PATH:BAUD:ADDRESS");
 };

@@ -82,10 +82,7 @@ impl Nest {
 
     fn fails(&mut self, state: NestState) -> NestState {
         self.mock.after(40);
-        let failed = JobDone {
-            at: self.mock.now,
-            trouble: Some(silent()),
-        };
+        let failed = JobDone::new(self.mock.now, Some(silent()));
         // The first failure ends the stage, the second ends the switching off after it.
         let state = self.step(state, Some(failed.clone()));
         assert!(matches!(state, NestState::Testing(_)));

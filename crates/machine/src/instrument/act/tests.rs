@@ -9,7 +9,7 @@ use texts::Message;
 use units::{RigTime, Span, Volt};
 
 fn done(at: RigTime) -> JobDone {
-    JobDone { at, trouble: None }
+    JobDone::new(at, None)
 }
 
 /// Returns a test rig that has read every point once, analog and counters included.
@@ -315,10 +315,7 @@ fn a_job_in_trouble_ends_the_acts() {
     let mut runner = Runner::new(acts, mock.now);
     runner.step(mock.now, None, &mock.image);
     let silent = Message::detail("unread", "measure 01 #01: silent");
-    let failed = JobDone {
-        at: mock.now,
-        trouble: Some(silent.clone()),
-    };
+    let failed = JobDone::new(mock.now, Some(silent.clone()));
     let answered = runner.step(mock.now, Some(&failed), &mock.image);
     assert_eq!(answered, RunnerState::Trouble(silent));
     let coil = mock.points.analog(AnalogIn::CoilVoltageFine);

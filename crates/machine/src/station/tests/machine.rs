@@ -425,12 +425,9 @@ impl Machine {
                 }
             }
             Job::Read(points) => points.iter().for_each(|point| self.read(*point)),
-            Job::Level(_) | Job::Restarts | Job::Mask(_) => {}
+            Job::Level(_) | Job::Restarts | Job::Mask(_) | Job::Query(_) => {}
         }
-        JobDone {
-            at: self.mock.now,
-            trouble: None,
-        }
+        JobDone::new(self.mock.now, None)
     }
 
     /// Reads a point: the coil is open, the contacts are good, no gate counts.

@@ -76,10 +76,7 @@ fn readings_follow_the_order_of_their_acts() {
         for channel in FINE {
             mock.volts(channel, f64::from(n));
         }
-        let done = JobDone {
-            at: mock.now,
-            trouble: None,
-        };
+        let done = JobDone::new(mock.now, None);
         doing = runner.step(mock.now, Some(&done), &mock.image);
     }
     assert_eq!(doing, RunnerState::Done);

@@ -64,10 +64,7 @@ fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
                         ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.channel.volt_per_ampere),
                     );
                 }
-                done = Some(JobDone {
-                    at: mock.now,
-                    trouble: None,
-                });
+                done = Some(JobDone::new(mock.now, None));
             }
             Progress::Running(RunnerState::Busy | RunnerState::Done | RunnerState::Trouble(_)) => {
                 panic!("a test that waits for nothing")

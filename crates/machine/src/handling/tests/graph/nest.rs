@@ -58,10 +58,10 @@ fn failed(mock: &MockRig, device: &Device) -> Procedure {
 }
 
 fn silent(mock: &MockRig) -> JobDone {
-    JobDone {
-        at: mock.now,
-        trouble: Some(Message::detail("unread", "measure 05: silent")),
-    }
+    JobDone::new(
+        mock.now,
+        Some(Message::detail("unread", "measure 05: silent")),
+    )
 }
 
 fn name(state: &NestState) -> &'static str {

@@ -269,10 +269,7 @@ fn fails_at(job: &Job) -> Test {
             Progress::Running(RunnerState::Job(requested)) => {
                 mock.after(4);
                 let trouble = (requested == *job).then(refused);
-                done = Some(JobDone {
-                    at: mock.now,
-                    trouble,
-                });
+                done = Some(JobDone::new(mock.now, trouble));
             }
             Progress::Running(RunnerState::Wait(until)) => {
                 mock.now = until;
@@ -424,10 +421,7 @@ fn another_supply_range_prevents_every_drive() {
                 let drives = |outputs: &[_]| outputs.contains(&(drive, true));
                 assert!(!matches!(&requested, Job::Set(outputs) if drives(outputs)));
                 mock.after(4);
-                done = Some(JobDone {
-                    at: mock.now,
-                    trouble: None,
-                });
+                done = Some(JobDone::new(mock.now, None));
             }
             Progress::Running(RunnerState::Wait(until)) => {
                 mock.now = until;

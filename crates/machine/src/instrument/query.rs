@@ -1,0 +1,112 @@
+//! Queries: programs that a procedure runs on SCPI instruments, and what the instruments deliver.
+
+pub use crate::rig::instruments::Instrument;
+use scpi::{Dialect, Reply, SamplesError, number};
+use std::sync::Arc;
+
+/// A program of an instrument's profile with its arguments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Query {
+    /// Instrument that runs the program.
+    pub instrument: Instrument,
+    /// Name of the program in the profile.
+    pub program: &'static str,
+    /// Arguments by name; the name ends with the unit.
+    pub arguments: Vec<(&'static str, f64)>,
+}
+
+/// Voltages of a digitizer at equal intervals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waveform {
+    /// Time of the first sample relative to the trigger, s.
+    pub start_s: f64,
+    /// Interval between two samples, s; above 0.
+    pub step_s: f64,
+    /// Voltages at the input of the digitizer.
+    pub volts: Vec<f32>,
+}
+
+/// What a program has delivered: the numbers of its replies in their order, or a waveform.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Delivered {
+    /// Numbers of all replies in their order; empty beside a waveform.
+    pub numbers: Vec<f64>,
+    /// Waveform of a program that reads one.
+    pub waveform: Option<Arc<Waveform>>,
+}
+
+impl Delivered {
+    /// Makes values of the replies to a program. A block and the list of numbers before it, its preamble, are a waveform;
+    /// a text that is no number gives no value.
+    ///
+    /// # Errors
+    /// Fails when a block has no preamble, or one that does not fit the dialect.
+    pub fn of(dialect: Dialect, replies: &[Reply]) -> Result<Self, SamplesError> {
+        let mut delivered = Self::default();
+        let mut preamble: &[f64] = &[];
+        for reply in replies {
+            match reply {
+                Reply::Number(number) => delivered.numbers.push(*number),
+                Reply::Numbers(numbers) => {
+                    preamble = numbers;
+                    delivered.numbers.extend(numbers);
+                }
+                Reply::Line(text) => delivered.numbers.extend(number(text).ok()),
+                Reply::Text(_) => {}
+                Reply::Block(bytes) => {
+                    let samples = scpi::samples(dialect, preamble, bytes)?;
+                    delivered.waveform = Some(Arc::new(Waveform {
+                        start_s: samples.start_s,
+                        step_s: samples.step_s,
+                        volts: samples.volts,
+                    }));
+                }
+            }
+        }
+        if delivered.waveform.is_some() {
+            delivered.numbers = Vec::new();
+        }
+        Ok(delivered)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_all_replies_keep_their_order() {
+        let replies = [
+            Reply::Number(1.5),
+            Reply::Line("STOP".to_owned()),
+            Reply::Line("8".to_owned()),
+            Reply::Numbers(vec![2.0, 3.0]),
+        ];
+        let delivered = Delivered::of(Dialect::Scpi, &replies);
+        let numbers = vec![1.5, 8.0, 2.0, 3.0];
+        assert_eq!(delivered.map(|it| it.numbers), Ok(numbers));
+    }
+
+    #[test]
+    fn a_block_and_its_preamble_are_a_waveform() {
+        let preamble = vec![0.0, 2.0, 3.0, 1.0, 1e-6, -2e-6, 0.0, 0.5, 0.0, 128.0];
+        let replies = [Reply::Numbers(preamble), Reply::Block(vec![128, 130, 126])];
+        let Ok(delivered) = Delivered::of(Dialect::Rigol, &replies) else {
+            panic!("no waveform");
+        };
+        assert!(delivered.numbers.is_empty(), "the preamble is no value");
+        let waveform = delivered.waveform.map(|it| (*it).clone());
+        let expected = Waveform {
+            start_s: -2e-6,
+            step_s: 1e-6,
+            volts: vec![0.0, 1.0, -1.0],
+        };
+        assert_eq!(waveform, Some(expected));
+    }
+
+    #[test]
+    fn a_block_without_preamble_is_refused() {
+        let replies = [Reply::Block(vec![1, 2])];
+        assert!(Delivered::of(Dialect::Rigol, &replies).is_err());
+    }
+}
