@@ -11,6 +11,7 @@ use super::em_relay::recipe::RelayRecipe;
 use super::made_up::MadeUp;
 use super::prompt::{self, Prompt};
 use super::resistor::recipe::ResistorRecipe;
+use super::ssr::recipe::SsrRecipe;
 use super::{Calibration, Device, Kind};
 use crate::gauge::{Limit, Rule};
 use crate::rig::fault::{Fault, Requirement};
@@ -139,6 +140,8 @@ pub enum DeviceRecipe {
     EmRelay(RelayRecipe),
     /// Resistor.
     Resistor(ResistorRecipe),
+    /// Solid-state relay.
+    Ssr(SsrRecipe),
 }
 
 impl Deref for DeviceRecipe {
@@ -148,6 +151,7 @@ impl Deref for DeviceRecipe {
         match self {
             Self::EmRelay(relay) => relay,
             Self::Resistor(resistor) => resistor,
+            Self::Ssr(ssr) => ssr,
         }
     }
 }
