@@ -33,6 +33,8 @@ pub mod recipe;
 pub mod search;
 
 #[cfg(test)]
+mod bench;
+#[cfg(test)]
 mod tests;
 
 pub use device::Device;
