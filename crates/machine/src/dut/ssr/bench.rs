@@ -1,11 +1,11 @@
 //! A fixture with a part on it, for tests: the bench answers the jobs of a test as instruments and modules do.
 #![allow(clippy::unwrap_used)]
 
+use super::Device as SsrDevice;
 use super::points::{Device, DigitalIn, DigitalOut, Points};
-use super::{Device as SsrDevice, Test};
 use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
 use crate::dut::em_relay::settings::ReferenceSet;
-use crate::dut::procedure::{Progress, TestProcedure};
+use crate::dut::procedure::Progress;
 use crate::dut::recipe::DeviceRecipe;
 use crate::dut::{Procedure, Recipe};
 use crate::instrument::act::{Job, JobDone, RunnerState};
@@ -84,8 +84,10 @@ pub struct Part {
     pub is_shorted: bool,
     pub has_diode: bool,
     pub is_turned: bool,
-    /// Conducts for ever once it has conducted.
-    pub sticks: bool,
+    /// Conducts for ever once this voltage has been at its input.
+    pub sticks_at_v: f64,
+    /// The same while the load is at its output.
+    pub sticks_loaded_v: f64,
     /// Inputs that the fixture never reports.
     pub dead: Vec<DigitalIn>,
     /// Voltage at the socket after the test.
@@ -111,7 +113,8 @@ pub fn good() -> Part {
         is_shorted: false,
         has_diode: false,
         is_turned: false,
-        sticks: false,
+        sticks_at_v: f64::INFINITY,
+        sticks_loaded_v: f64::INFINITY,
         dead: Vec::new(),
         residual_v: 0.5,
         failing: None,
@@ -131,7 +134,7 @@ pub struct Bench {
     points: Points,
     on: BTreeSet<DigitalOut>,
     is_lit: bool,
-    has_conducted: bool,
+    is_stuck: bool,
     is_heated: bool,
     /// Voltage of the source at the output, and whether it is on.
     source_v: f64,
@@ -154,7 +157,7 @@ impl Bench {
             log: Vec::new(),
             on: BTreeSet::new(),
             is_lit: false,
-            has_conducted: false,
+            is_stuck: false,
             is_heated: false,
             source_v: 0.0,
             has_failed: false,
@@ -270,7 +273,8 @@ impl Bench {
         !self.part.dead.contains(&point)
             && match point {
                 DigitalIn::ShortSeen => {
-                    let conducts = self.part.is_shorted || (reversed && self.part.has_diode);
+                    let conducts = self.part.is_shorted || self.is_stuck;
+                    let conducts = conducts || (reversed && self.part.has_diode);
                     is_on(DigitalOut::ShortCheck) && conducts
                 }
                 DigitalIn::KelvinInPlus
@@ -401,9 +405,11 @@ impl Bench {
     fn control(&mut self, volts: f64) {
         if volts >= self.part.turn_on_v {
             self.is_lit = true;
-            self.has_conducted = true;
+            let is_loaded = self.on.contains(&DigitalOut::SmuLoad);
+            let loaded = is_loaded && volts >= self.part.sticks_loaded_v;
+            self.is_stuck |= loaded || volts >= self.part.sticks_at_v;
         } else if volts < self.part.turn_off_v {
-            self.is_lit = self.part.sticks && self.has_conducted;
+            self.is_lit = self.is_stuck;
         }
     }
 
@@ -445,13 +451,5 @@ impl Bench {
                 .map(|it| volts(at(it)) as f32)
                 .collect(),
         }
-    }
-}
-
-/// Returns the test of a solid-state relay.
-pub fn inner(test: &Procedure) -> &Test {
-    match test {
-        Procedure::Ssr(test) => test,
-        _ => panic!("a solid-state relay"),
     }
 }

@@ -8,7 +8,7 @@ use super::program::drop_count;
 use super::recipe::SsrRecipe;
 use crate::dut::Kind;
 use crate::dut::device::Rig;
-use crate::dut::recipe::{KindRecipe, Limits};
+use crate::dut::recipe::Limits;
 use crate::gauge::Rule;
 use crate::instrument::act::Act;
 use crate::rig::fault::Fault;
@@ -16,9 +16,8 @@ use crate::rig::wiring::Wiring;
 
 /// Returns every reason why the rig cannot carry out the recipe.
 pub fn infeasible(ssr: &SsrRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
-    let demand = ssr.demand(limits, rig.accuracy);
     let points = Points::resolve(rig.wiring);
-    let (wiring, points) = match Kind::Ssr.reach(rig, points, &demand) {
+    let (wiring, points) = match Kind::Ssr.reach(rig, points, None) {
         Ok(reach) => reach,
         Err(fault) => return vec![fault],
     };

@@ -2,7 +2,6 @@
 
 use super::feasible;
 use super::{card, made_up};
-use crate::dut::accuracy::AccuracySettings;
 use crate::dut::card::Card;
 use crate::dut::device::Rig;
 use crate::dut::made_up::MadeUp;
@@ -11,10 +10,8 @@ use crate::dut::rejudge::UNCONVERTED;
 use crate::dut::{Calibration, Device, Kind, Recipe};
 use crate::rig::fault::Fault;
 use crate::rig::point::MissingPoint;
-use crate::rig::supply::SupplyDemand;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use units::{Ampere, Volt};
 
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -102,15 +99,6 @@ impl KindRecipe for SsrRecipe {
 
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
         feasible::infeasible(self, limits, rig)
-    }
-
-    fn demand(&self, _limits: &Limits, _accuracy: &AccuracySettings) -> SupplyDemand {
-        SupplyDemand {
-            volts: Volt(0.0),
-            volts_key: "part.control_v",
-            current: Ampere(0.0),
-            current_key: "part.control_v",
-        }
     }
 
     fn card(&self) -> Card {

@@ -1,8 +1,8 @@
 //! Pins and short check: the probes are up, both probes of each pin touch it, and the output is not shorted.
 
-use super::board::RELAY;
+use super::board::{self, Position, RELAY};
 use super::given::Given;
-use super::state::Next;
+use super::state::{Next, State};
 use crate::dut::record::TestRecord;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::plan::Plan;
@@ -62,6 +62,27 @@ pub fn conclude_short(record: &mut TestRecord, plan: &Plan, given: &Given) -> Ne
     let (forward, reversed) = (seen.next() == Some(true), seen.next() == Some(true));
     if forward || (reversed && !plan.body_diode) {
         record.stop(Finding::Shorted);
+    }
+    Next::Planned
+}
+
+/// Returns the acts that look once more whether the output conducts, while no source is on.
+pub fn stuck_acts(state: &mut State, points: &Points) -> Vec<Act> {
+    let mut acts = board::change(points, state.position, Position::Isolated);
+    state.position = Position::Isolated;
+    acts.extend(look(points, &[DigitalOut::ShortCheck]));
+    acts.push(Act::Set(points.outputs(&[])));
+    acts.push(Act::Wait(RELAY));
+    acts
+}
+
+/// Concludes whether an output without bounds to its leakage conducts for ever; it did not before the control was on.
+pub fn conclude_stuck(state: &mut State, given: &Given) -> Next {
+    let point = given.points.input(DigitalIn::ShortSeen);
+    if given.readings.states(point).last() == Some(true) {
+        state.record.stop(Finding::StuckOn);
+    } else if let Some(finding) = state.suspected {
+        state.record.stop(finding);
     }
     Next::Planned
 }

@@ -39,10 +39,10 @@ pub fn conclude(
     let [numbers] = given.numbers(Device::SmuOut)?;
     let (ampere, moved) = Given::settled(Device::SmuOut, numbers)?;
     if range.is_limited(ampere) {
-        state.record.stop(finding);
-    } else {
-        let budget = current(range, ampere, moved, 1e-6);
-        state.found([(of, ampere / 1e-6, Unit::Microampere, budget)]);
+        state.suspected = Some(finding);
+        return Ok(Next::Insert(Stage::StuckShort));
     }
+    let budget = current(range, ampere, moved, 1e-6);
+    state.found([(of, ampere / 1e-6, Unit::Microampere, budget)]);
     Ok(Next::Planned)
 }

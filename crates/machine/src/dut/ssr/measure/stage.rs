@@ -17,6 +17,8 @@ pub enum Stage {
     Turned,
     /// Leakage before the output has conducted.
     ColdLeakage,
+    /// Short check once more, after a leakage without bounds: the control has turned the output on for ever.
+    StuckShort,
     /// The output must block at the turn-off voltage.
     Blocks,
     /// The same a guard band beyond the limit, and without control.
@@ -41,12 +43,13 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Contact,
         Self::Short,
         Self::Input,
         Self::Turned,
         Self::ColdLeakage,
+        Self::StuckShort,
         Self::Blocks,
         Self::BlocksBeyond,
         Self::Conducts,
@@ -78,7 +81,7 @@ impl Stage {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Contact => "Pins",
-            Self::Short => "Short",
+            Self::Short | Self::StuckShort => "Short",
             Self::Input | Self::Turned => "Input",
             Self::ColdLeakage => "Leakage",
             Self::Blocks | Self::BlocksBeyond => "Blocks",
@@ -95,7 +98,7 @@ impl Stage {
     pub const fn key(self) -> &'static str {
         match self {
             Self::Contact => "pins",
-            Self::Short => "short",
+            Self::Short | Self::StuckShort => "short",
             Self::Input | Self::Turned => "input",
             Self::ColdLeakage => "leakage",
             Self::Blocks | Self::BlocksBeyond => "blocks",
@@ -122,6 +125,7 @@ impl Stage {
             Self::HotLeakage => &[LeakageHot],
             Self::Contact
             | Self::Short
+            | Self::StuckShort
             | Self::Turned
             | Self::Blocks
             | Self::BlocksBeyond

@@ -24,7 +24,7 @@ pub struct State {
     pub record: TestRecord,
     /// Connections of the fixture.
     pub position: Position,
-    /// Finding about the input that holds unless the part lies turned.
+    /// Finding that holds unless the next stage finds another cause.
     pub suspected: Option<Finding>,
     /// Search under way.
     pub search: Option<Search>,
@@ -54,6 +54,7 @@ impl State {
         match stage {
             Stage::Contact => contact::acts(points),
             Stage::Short => contact::short_acts(points),
+            Stage::StuckShort => contact::stuck_acts(self, points),
             Stage::Input => input::acts(self, plan, points),
             Stage::Turned => input::turned_acts(self, plan, points),
             Stage::ColdLeakage => leakage::acts(self, &plan.leakage_cold, plan, points),
@@ -82,6 +83,7 @@ impl State {
         let next = match stage {
             Stage::Contact => Ok(contact::conclude(&mut self.record, &given)),
             Stage::Short => Ok(contact::conclude_short(&mut self.record, plan, &given)),
+            Stage::StuckShort => Ok(contact::conclude_stuck(self, &given)),
             Stage::Input => input::conclude(self, plan, &given),
             Stage::Turned => input::conclude_turned(self, &given),
             Stage::ColdLeakage | Stage::HotLeakage => leakage::conclude(self, stage, plan, &given),

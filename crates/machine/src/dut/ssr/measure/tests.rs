@@ -54,7 +54,7 @@ fn a_good_part_passes_with_its_true_values() {
 fn every_finding_of_a_part_goes_to_its_bin() {
     use Finding as F;
     type Change = fn(&mut Part);
-    let cases: [(Change, Finding, Bin); 17] = [
+    let cases: [(Change, Finding, Bin); 18] = [
         (
             |it| it.dead = vec![DigitalIn::KelvinOut1],
             F::PinOpen,
@@ -89,7 +89,8 @@ fn every_finding_of_a_part_goes_to_its_bin() {
             F::ConductsBelowTurnOff,
             bins::INPUT,
         ),
-        (|it| it.sticks = true, F::StuckOn, bins::OUTPUT),
+        (|it| it.sticks_at_v = 4.0, F::StuckOn, bins::OUTPUT),
+        (|it| it.sticks_loaded_v = 4.0, F::StuckOn, bins::OUTPUT),
         (|it| it.turn_on_v = 5.5, F::NeverOn, bins::OUTPUT),
         (|it| it.turn_on_v = 3.6, F::BlocksAboveTurnOn, bins::INPUT),
         (|it| it.on_s = 2.5e-3, F::TurnsOnTooLate, bins::TIME),
