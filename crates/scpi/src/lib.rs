@@ -40,8 +40,10 @@
 //! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; a program on its way; numbers that prove the step |
 //! | `framing.rs`, `address.rs`, `settings.rs` | ends of messages and adapters; places; times |
 //! | `waveform.rs` | samples of a digitizer |
+//! | `accuracy.rs` | how far an instrument may err |
 //! | `failure.rs` | every reason why there is no value |
 
+mod accuracy;
 mod address;
 mod failure;
 mod framing;
@@ -59,6 +61,7 @@ mod waveform;
 #[cfg(test)]
 mod tests;
 
+pub use accuracy::{Accuracy, Quantity, range};
 pub use address::{Flow, LinkAddress, LinkAddressError, Transport};
 pub use failure::Failure;
 pub use framing::{Framing, Terminator};

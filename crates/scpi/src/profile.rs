@@ -1,6 +1,7 @@
 //! Instrument profiles: what an instrument is and which commands carry out a program, as a file states it. The crate
 //! `config` checks the keys; a link needs neither class nor accuracy.
 
+use super::accuracy::Accuracy;
 use super::address::{Flow, LinkAddress, Transport};
 use super::framing::{Framing, Terminator};
 use super::program::{Program, Step};
@@ -39,6 +40,9 @@ pub struct Profile {
     pub flow: Flow,
     /// Command that ends local mode; the link sends it first.
     pub remote: Option<String>,
+    /// How far the instrument may err, by quantity and range.
+    #[serde(default)]
+    pub accuracy: Vec<Accuracy>,
     set_up: Vec<StepText>,
     safe: Vec<StepText>,
     program: BTreeMap<String, ProgramText>,

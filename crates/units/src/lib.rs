@@ -87,6 +87,12 @@ pub enum Unit {
     Milliohm,
     /// Voltage, volt.
     Volt,
+    /// Small voltage, millivolt.
+    Millivolt,
+    /// Current, milliampere.
+    Milliampere,
+    /// Small current, microampere.
+    Microampere,
     /// Time, millisecond.
     Millisecond,
     /// Delay of a gate, microsecond.
@@ -105,6 +111,9 @@ impl Unit {
             Self::Ohm => "ohm",
             Self::Milliohm => "mOhm",
             Self::Volt => "V",
+            Self::Millivolt => "mV",
+            Self::Milliampere => "mA",
+            Self::Microampere => "uA",
             Self::Millisecond => "ms",
             Self::Microsecond => "us",
             Self::VoltPerSecond => "V/s",
@@ -117,9 +126,15 @@ impl Unit {
         match self {
             Self::Ohm => "Ω",
             Self::Milliohm => "mΩ",
+            Self::Microampere => "µA",
             Self::Microsecond => "µs",
             Self::MilliohmPerVolt => "mΩ/V",
-            Self::One | Self::Volt | Self::Millisecond | Self::VoltPerSecond => self.symbol(),
+            Self::One
+            | Self::Volt
+            | Self::Millivolt
+            | Self::Milliampere
+            | Self::Millisecond
+            | Self::VoltPerSecond => self.symbol(),
         }
     }
 }

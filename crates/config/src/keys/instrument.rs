@@ -25,11 +25,13 @@ const PROGRAM: &[Key] = keys! {
 };
 
 const ACCURACY: &[Key] = keys! {
-    key("quantity", Form::Choice(&["voltage_v", "source_voltage_v", "current_a", "frequency_hz", "time_s"]), "nothing yet",
+    key("quantity", Form::Choice(&["voltage_v", "source_voltage_v", "current_a", "source_current_a", "frequency_hz", "time_s"]), "gauge",
         "quantity with its unit");
-    key("full_scale", above_zero(1e9, ""), "nothing yet", "end of the range, in the unit of the quantity");
-    key("reading_pct", from_to(0.0, 100.0, "%"), "nothing yet", "error as a share of the reading");
-    key("offset", from_to(0.0, 1e9, ""), "nothing yet", "error beside it, in the unit of the quantity");
+    key("full_scale", above_zero(1e9, ""), "gauge", "end of the range, in the unit of the quantity");
+    key("reading_pct", from_to(0.0, 100.0, "%"), "gauge", "error as a share of the reading");
+    key("offset", from_to(0.0, 1e9, ""), "gauge", "error beside it, in the unit of the quantity");
+    optional("noise", from_to(0.0, 1e9, ""), "gauge",
+        "standard deviation of a reading averaged over one period of the mains, in the unit of the quantity; default 0");
 };
 
 /// All keys of a profile.
@@ -50,5 +52,5 @@ pub const FILE: &[Key] = keys! {
     key("set_up", STEPS, "scpi", "sent at the start and after every doubt");
     key("safe", STEPS, "scpi", "makes the instrument safe");
     key("program", Form::Named(&Form::Table(PROGRAM)), "scpi", "programs by name");
-    optional("accuracy", Form::List(&Form::Table(ACCURACY)), "nothing yet", "errors that the maker states");
+    optional("accuracy", Form::List(&Form::Table(ACCURACY)), "gauge", "errors that the maker states");
 };

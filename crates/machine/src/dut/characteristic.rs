@@ -5,7 +5,7 @@
 
 use super::Kind;
 use super::verdict::Bin;
-use super::{em_relay, resistor};
+use super::{em_relay, resistor, ssr};
 use crate::gauge::repetition::MeanOf;
 use crate::instrument::curve::Curve;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -78,6 +78,8 @@ pub enum Characteristic {
     EmRelay(em_relay::Parameter),
     /// Characteristic of a resistor.
     Resistor(resistor::Parameter),
+    /// Characteristic of a solid-state relay.
+    Ssr(ssr::Parameter),
 }
 
 impl Characteristic {
@@ -119,6 +121,7 @@ impl Deref for Characteristic {
         match self {
             Self::EmRelay(parameter) => parameter,
             Self::Resistor(parameter) => parameter,
+            Self::Ssr(parameter) => parameter,
         }
     }
 }

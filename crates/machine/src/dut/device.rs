@@ -9,6 +9,7 @@ use super::procedure::Procedure;
 use super::promise::Broken;
 use super::record::TestRecord;
 use super::resistor;
+use super::ssr;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::wiring::Wiring;
@@ -177,6 +178,8 @@ pub enum Device {
     EmRelay(Box<em_relay::Device>),
     /// Resistor.
     Resistor(Box<resistor::Device>),
+    /// Solid-state relay.
+    Ssr(Box<ssr::Device>),
 }
 
 impl Deref for Device {
@@ -186,6 +189,7 @@ impl Deref for Device {
         match self {
             Self::EmRelay(relay) => relay.as_ref(),
             Self::Resistor(resistor) => resistor.as_ref(),
+            Self::Ssr(ssr) => ssr.as_ref(),
         }
     }
 }
@@ -195,6 +199,7 @@ impl DerefMut for Device {
         match self {
             Self::EmRelay(relay) => relay.as_mut(),
             Self::Resistor(resistor) => resistor.as_mut(),
+            Self::Ssr(ssr) => ssr.as_mut(),
         }
     }
 }

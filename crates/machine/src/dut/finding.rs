@@ -2,7 +2,7 @@
 
 use super::characteristic::Characteristic;
 use super::verdict::Bin;
-use super::{Kind, em_relay, resistor};
+use super::{Kind, em_relay, resistor, ssr};
 use crate::gauge::Side;
 
 /// Constant data of a finding.
@@ -50,6 +50,8 @@ pub enum Finding {
     EmRelay(em_relay::Finding),
     /// Finding of a resistor test.
     Resistor(resistor::Finding),
+    /// Finding of the test of a solid-state relay.
+    Ssr(ssr::Finding),
 }
 
 impl Finding {
@@ -63,6 +65,7 @@ impl Finding {
         match self {
             Self::EmRelay(finding) => finding.entry(),
             Self::Resistor(finding) => finding.entry(),
+            Self::Ssr(finding) => finding.entry(),
         }
     }
 }
@@ -76,5 +79,11 @@ impl From<em_relay::Finding> for Finding {
 impl From<resistor::Finding> for Finding {
     fn from(finding: resistor::Finding) -> Self {
         Self::Resistor(finding)
+    }
+}
+
+impl From<ssr::Finding> for Finding {
+    fn from(finding: ssr::Finding) -> Self {
+        Self::Ssr(finding)
     }
 }

@@ -21,6 +21,7 @@ pub mod recipe;
 pub mod record;
 pub mod rejudge;
 pub mod resistor;
+pub mod ssr;
 pub mod verdict;
 
 pub use crate::gauge::Judgement;
@@ -38,7 +39,7 @@ use crate::rig::point::{AnalogInput, Fixture};
 use crate::rig::wiring::Wiring;
 
 /// The fixture points that each kind declares.
-pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE];
+pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE, ssr::points::FIXTURE];
 
 /// Returns the inputs that converters read while the references of any kind are measured. If the controller was cut off
 /// during that measurement, the channel mask of these inputs is still in their modules.
@@ -58,19 +59,26 @@ pub enum Kind {
     EmRelay,
     /// One resistor in a body of relay size, which checks the fixture.
     Resistor,
+    /// Solid-state relay: LED, MOSFET output.
+    Ssr,
 }
 
 impl Kind {
     /// Every kind, in the order of its declaration.
-    pub const ALL: [Self; 2] = [Self::EmRelay, Self::Resistor];
+    pub const ALL: [Self; 3] = [Self::EmRelay, Self::Resistor, Self::Ssr];
     /// Names of the kinds in recipes, in the order of [`Self::ALL`].
-    pub const NAMES: &'static [&'static str] = &[Self::EmRelay.name(), Self::Resistor.name()];
+    pub const NAMES: &'static [&'static str] = &[
+        Self::EmRelay.name(),
+        Self::Resistor.name(),
+        Self::Ssr.name(),
+    ];
 
     /// Returns the constant data of the kind.
     pub const fn definition(self) -> &'static KindDefinition {
         match self {
             Self::EmRelay => &em_relay::DEFINITION,
             Self::Resistor => &resistor::DEFINITION,
+            Self::Ssr => &ssr::DEFINITION,
         }
     }
 

@@ -4,7 +4,7 @@ use super::Characteristic;
 use super::reason::Reason;
 use super::record::{Stop, TestRecord};
 use super::verdict::Verdict;
-use super::{Kind, em_relay, resistor};
+use super::{Kind, em_relay, resistor, ssr};
 use crate::gauge::Judgement;
 use crate::instrument::act::{JobDone, RunnerState};
 use crate::rig::image::Image;
@@ -69,6 +69,11 @@ pub trait TestProcedure {
     /// rig, not of the part.
     fn range_mismatch(&self) -> Option<&RangeMismatch>;
 
+    /// Returns true when the test has ended without proof that the socket is free of dangerous voltage: trouble of the rig.
+    fn is_live(&self) -> bool {
+        false
+    }
+
     /// Returns the verdict of the part.
     fn verdict(&self) -> Verdict {
         let expected = self.kind().characteristics();
@@ -83,6 +88,8 @@ pub enum Procedure {
     EmRelay(Box<em_relay::measure::Test>),
     /// Test of a resistor.
     Resistor(Box<resistor::Test>),
+    /// Test of a solid-state relay.
+    Ssr(Box<ssr::Test>),
 }
 
 impl Deref for Procedure {
@@ -92,6 +99,7 @@ impl Deref for Procedure {
         match self {
             Self::EmRelay(test) => test.as_ref(),
             Self::Resistor(test) => test.as_ref(),
+            Self::Ssr(test) => test.as_ref(),
         }
     }
 }
@@ -101,6 +109,7 @@ impl DerefMut for Procedure {
         match self {
             Self::EmRelay(test) => test.as_mut(),
             Self::Resistor(test) => test.as_mut(),
+            Self::Ssr(test) => test.as_mut(),
         }
     }
 }

@@ -11,6 +11,7 @@ use super::em_relay::recipe::RelayRecipe;
 use super::made_up::MadeUp;
 use super::prompt::{self, Prompt};
 use super::resistor::recipe::ResistorRecipe;
+use super::ssr::recipe::SsrRecipe;
 use super::{Calibration, Device, Kind};
 use crate::gauge::{Limit, Rule};
 use crate::rig::fault::{Fault, Requirement};
@@ -24,7 +25,7 @@ use std::sync::Arc;
 use units::Celsius;
 
 impl Kind {
-    /// Returns the wiring in the supply range that serves `demand`, and the points of the kind.
+    /// Returns the wiring in the supply range that serves `demand`, if there is one, and the points of the kind.
     ///
     /// # Errors
     /// Fails with the first bin, point or range that the rig does not have.
@@ -32,7 +33,7 @@ impl Kind {
         self,
         rig: &Rig,
         points: Result<P, MissingPoint>,
-        demand: &SupplyDemand,
+        demand: Option<&SupplyDemand>,
     ) -> Result<(Wiring, P), Fault> {
         let wiring = rig.wiring;
         let definition = self.definition();
@@ -46,6 +47,9 @@ impl Kind {
             let expected = "a rig with every point that its test needs";
             Fault::new("test", missing, expected)
         })?;
+        let Some(demand) = demand else {
+            return Ok((wiring.clone(), points));
+        };
         let range = demand.range(wiring)?;
         Ok((wiring.in_range(range), points))
     }
@@ -113,8 +117,10 @@ pub trait KindRecipe {
     /// keys that ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault>;
 
-    /// Returns the demand of the test on the supply.
-    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand;
+    /// Returns the demand of the test on the supply; none for a test that uses no supply.
+    fn demand(&self, _limits: &Limits, _accuracy: &AccuracySettings) -> Option<SupplyDemand> {
+        None
+    }
 
     /// Returns the process card.
     fn card(&self) -> Card;
@@ -139,6 +145,8 @@ pub enum DeviceRecipe {
     EmRelay(RelayRecipe),
     /// Resistor.
     Resistor(ResistorRecipe),
+    /// Solid-state relay.
+    Ssr(SsrRecipe),
 }
 
 impl Deref for DeviceRecipe {
@@ -148,6 +156,7 @@ impl Deref for DeviceRecipe {
         match self {
             Self::EmRelay(relay) => relay,
             Self::Resistor(resistor) => resistor,
+            Self::Ssr(ssr) => ssr,
         }
     }
 }
@@ -218,14 +227,16 @@ impl Recipe {
         self.device.infeasible(&self.limits, rig)
     }
 
-    /// Returns the wiring in the smallest supply range that serves the recipe. The recipe must not be
-    /// [infeasible](Self::infeasible).
+    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be
+    /// [infeasible](Self::infeasible); unchanged for a recipe that uses no supply.
     ///
     /// # Errors
     /// Fails with the key that asks more of the supply than any range gives.
     pub fn wired(&self, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<Wiring, Fault> {
-        let demand = self.device.demand(&self.limits, accuracy);
-        Ok(wiring.in_range(demand.range(wiring)?))
+        match self.device.demand(&self.limits, accuracy) {
+            Some(demand) => Ok(wiring.in_range(demand.range(wiring)?)),
+            None => Ok(wiring.clone()),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Whether a recipe may judge the stored values of a part that another recipe measured, and how to convert them.
 
+use super::keys::REFERENCE_TEMPERATURE;
 use super::{Characteristic, Kind, Recipe};
 use units::Celsius;
 
@@ -16,6 +17,10 @@ pub struct Basis {
 
 /// Key of `[part]` for the nominal voltage, in the kinds that have one.
 const NOMINAL: &str = "nominal_v";
+/// Key of `[part]` for the temperature that results are converted to, in the kinds that convert them.
+const REFERENCE: &str = REFERENCE_TEMPERATURE.name;
+/// Temperature of results that no kind converts.
+pub const UNCONVERTED: Celsius = Celsius(25.0);
 
 /// Why a recipe cannot judge stored values.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,7 +49,10 @@ impl Basis {
                 true => Some(number(NOMINAL)?),
                 false => None,
             },
-            reference: Celsius(number("reference_temperature_c")?),
+            reference: match kind.sections().part.iter().any(|it| it.name == REFERENCE) {
+                true => Celsius(number(REFERENCE)?),
+                false => UNCONVERTED,
+            },
         })
     }
 

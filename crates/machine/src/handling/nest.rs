@@ -195,7 +195,9 @@ fn testing(
         Progress::Running(RunnerState::Wait(until)) => turn.rig.wake_at = Some(until),
         Progress::Running(RunnerState::Busy | RunnerState::Done | RunnerState::Trouble(_)) => {}
         Progress::Judged => {
-            if let Some(mismatch) = test.range_mismatch() {
+            if test.is_live() {
+                turn.report(Trouble::SocketLive);
+            } else if let Some(mismatch) = test.range_mismatch() {
                 turn.report(Trouble::SupplyRange(mismatch.clone()));
             } else if let Some(again) = repeat_reason(id, turn, test) {
                 turn.report(again);

@@ -46,4 +46,6 @@ pub enum Trouble {
     ReferenceRepeated(String, Reason),
     /// The supply is in another range than the one selected.
     SupplyRange(RangeMismatch),
+    /// A test has ended without proof that the socket is free of dangerous voltage.
+    SocketLive,
 }

@@ -136,6 +136,8 @@ codes! {
     HistoryLost = "history_lost", Abort, Sensor;
     /// The supply is in another range than the one selected.
     SupplyRange = "supply_range", Abort, Operator;
+    /// A test has ended without proof that the socket is free of dangerous voltage.
+    SocketLive = "socket_live", Abort, Operator;
     /// References or reference parts do not agree with their certificates.
     CalibrationFailed = "calibration_failed", Abort, Operator;
     /// The calibration has expired during the lot.

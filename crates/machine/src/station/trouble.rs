@@ -49,6 +49,7 @@ impl From<Trouble> for Alarm {
             Trouble::Sticks => Self::part_sticks(),
             Trouble::Stuck => AlarmCode::PartStuck.into(),
             Trouble::SupplyRange(mismatch) => Self::supply_range(mismatch),
+            Trouble::SocketLive => AlarmCode::SocketLive.into(),
             Trouble::ReferenceRepeated(serial, why) => Self::reference_repeated(&serial, &why),
         }
     }

@@ -60,7 +60,7 @@ struct Reach {
 fn reach(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Result<Reach, Fault> {
     let points = Points::resolve(rig.wiring);
     let demand = demand(recipe, limits, rig.accuracy);
-    let (wiring, points) = Kind::EmRelay.reach(rig, points, &demand)?;
+    let (wiring, points) = Kind::EmRelay.reach(rig, points, Some(&demand))?;
     Ok(Reach { wiring, points })
 }
 

@@ -60,8 +60,8 @@ impl KindRecipe for RelayRecipe {
         feasible::faults(self, limits, rig)
     }
 
-    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
-        feasible::demand(self, limits, accuracy)
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> Option<SupplyDemand> {
+        Some(feasible::demand(self, limits, accuracy))
     }
 
     fn card(&self) -> Card {

@@ -79,7 +79,7 @@ impl KindRecipe for ResistorRecipe {
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
         let demand = self.demand(limits, rig.accuracy);
         let points = Points::resolve(rig.wiring);
-        let (wiring, points) = match Kind::Resistor.reach(rig, points, &demand) {
+        let (wiring, points) = match Kind::Resistor.reach(rig, points, demand.as_ref()) {
             Ok(reach) => reach,
             Err(fault) => return vec![fault],
         };
@@ -100,15 +100,15 @@ impl KindRecipe for ResistorRecipe {
         .collect()
     }
 
-    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> Option<SupplyDemand> {
         let level_v = self.test.level_v;
         let low_ohm = limits.of(Parameter::Resistance).low;
-        SupplyDemand {
+        Some(SupplyDemand {
             volts: Volt(level_v * (1.0 + accuracy.ao_gain_pct / 100.0)),
             volts_key: "test.level_v",
             current: Ampere(low_ohm.map_or(0.0, |ohm| level_v / ohm)),
             current_key: "limits.resistance_ohm.low",
-        }
+        })
     }
 
     fn card(&self) -> Card {

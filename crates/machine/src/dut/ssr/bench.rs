@@ -1,0 +1,455 @@
+//! A fixture with a part on it, for tests: the bench answers the jobs of a test as instruments and modules do.
+#![allow(clippy::unwrap_used)]
+
+use super::Device as SsrDevice;
+use super::points::{Device, DigitalIn, DigitalOut, Points};
+use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
+use crate::dut::em_relay::settings::ReferenceSet;
+use crate::dut::procedure::Progress;
+use crate::dut::recipe::DeviceRecipe;
+use crate::dut::{Procedure, Recipe};
+use crate::instrument::act::{Job, JobDone, RunnerState};
+use crate::instrument::query::{Delivered, Query, Waveform};
+use crate::rig::image::Image;
+use crate::rig::instruments::Profiles;
+use crate::rig::point::Point;
+use crate::rig::settings::RigSettings;
+use crate::rig::wiring::Wiring;
+use dcon::{Bits, Reply};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use texts::Message;
+use units::{RigTime, Span};
+
+/// Text of the rig.
+pub const RIG: &str = include_str!("../../../../../config/rigs/ssr/rig.toml");
+/// Text of the recipe.
+pub const RECIPE: &str = include_str!("../../../../../config/rigs/ssr/recipes/ssr-dc-60v-3a.toml");
+const PROFILES: [(&str, &str); 4] = [
+    (
+        "smu-2450",
+        include_str!("../../../../../config/instruments/smu-2450.toml"),
+    ),
+    (
+        "digitizer-rigol",
+        include_str!("../../../../../config/instruments/digitizer-rigol.toml"),
+    ),
+    (
+        "digitizer-keysight",
+        include_str!("../../../../../config/instruments/digitizer-keysight.toml"),
+    ),
+    (
+        "pulse-source",
+        include_str!("../../../../../config/instruments/pulse-source.toml"),
+    ),
+];
+
+/// Profiles; `change` gets name and text of each.
+pub fn profiles(change: impl Fn(&str, &str) -> String) -> Profiles {
+    let parsed = |(name, text): (&str, &str)| {
+        let profile: scpi::Profile = toml::from_str(&change(name, text)).unwrap();
+        (name.to_owned(), Arc::new(profile))
+    };
+    PROFILES.into_iter().map(parsed).collect()
+}
+
+/// The wiring of a rig.
+pub fn wiring(rig: &str, profiles: &Profiles) -> Arc<Wiring> {
+    let settings: RigSettings = toml::from_str(rig).unwrap();
+    Arc::new(Wiring::resolve_with(&settings, crate::dut::FIXTURES, profiles).unwrap())
+}
+
+/// The recipe with changes of its text.
+pub fn recipe(changes: &[(&str, &str)]) -> Arc<Recipe> {
+    let text = changes.iter().fold(RECIPE.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from} is not in the recipe");
+        text.replace(from, to)
+    });
+    Arc::new(toml::from_str(&text).unwrap())
+}
+
+/// True values of a part, and the state of the fixture.
+#[derive(Debug, Clone)]
+pub struct Part {
+    pub input_a: f64,
+    pub reverse_a: f64,
+    pub turn_on_v: f64,
+    pub turn_off_v: f64,
+    pub leakage_a: f64,
+    pub hot_leakage_a: f64,
+    pub ohm: f64,
+    pub rise_v: f64,
+    pub on_s: f64,
+    pub off_s: f64,
+    pub is_shorted: bool,
+    pub has_diode: bool,
+    pub is_turned: bool,
+    /// Conducts for ever once this voltage has been at its input.
+    pub sticks_at_v: f64,
+    /// The same while the load is at its output.
+    pub sticks_loaded_v: f64,
+    /// Inputs that the fixture never reports.
+    pub dead: Vec<DigitalIn>,
+    /// Voltage at the socket after the test.
+    pub residual_v: f64,
+    /// Program that fails, and program that delivers these numbers instead.
+    pub failing: Option<(Device, &'static str)>,
+    pub spoiled: Option<(&'static str, Vec<f64>)>,
+}
+
+/// A part inside every limit.
+pub fn good() -> Part {
+    Part {
+        input_a: 3.8e-3,
+        reverse_a: 1e-6,
+        turn_on_v: 2.41,
+        turn_off_v: 2.23,
+        leakage_a: 0.2e-6,
+        hot_leakage_a: 0.4e-6,
+        ohm: 0.060,
+        rise_v: 60e-6,
+        on_s: 300e-6,
+        off_s: 200e-6,
+        is_shorted: false,
+        has_diode: false,
+        is_turned: false,
+        sticks_at_v: f64::INFINITY,
+        sticks_loaded_v: f64::INFINITY,
+        dead: Vec::new(),
+        residual_v: 0.5,
+        failing: None,
+        spoiled: None,
+    }
+}
+
+/// The fixture with a part.
+pub struct Bench {
+    pub part: Part,
+    pub now: RigTime,
+    pub rounds: usize,
+    /// Jobs in their order, as words.
+    pub log: Vec<String>,
+    wiring: Arc<Wiring>,
+    image: Image,
+    points: Points,
+    on: BTreeSet<DigitalOut>,
+    is_lit: bool,
+    is_stuck: bool,
+    is_heated: bool,
+    /// Voltage of the source at the output, and whether it is on.
+    source_v: f64,
+    has_failed: bool,
+    record_s: (f64, f64),
+    pulse_s: f64,
+}
+
+impl Bench {
+    /// Puts a part on the fixture.
+    pub fn with(part: Part) -> Self {
+        let wiring = wiring(RIG, &profiles(|_, text| text.to_owned()));
+        Self {
+            points: Points::resolve(&wiring).unwrap(),
+            image: Image::new(Arc::clone(&wiring)),
+            wiring,
+            part,
+            now: RigTime(1_000_000),
+            rounds: 0,
+            log: Vec::new(),
+            on: BTreeSet::new(),
+            is_lit: false,
+            is_stuck: false,
+            is_heated: false,
+            source_v: 0.0,
+            has_failed: false,
+            record_s: (0.0, 0.0),
+            pulse_s: 0.0,
+        }
+    }
+
+    /// Tests the part by a recipe.
+    pub fn tested(&mut self, recipe: Arc<Recipe>, thorough: bool) -> Procedure {
+        let DeviceRecipe::Ssr(ssr) = recipe.device.clone() else {
+            panic!("a solid-state relay");
+        };
+        let rig = Rig {
+            wiring: &self.wiring,
+            reference: None,
+            accuracy: &crate::dut::em_relay::tests::context().accuracy,
+            reference_parts: &ReferenceSet::default(),
+        };
+        let device = SsrDevice::new(recipe, &ssr, &rig).unwrap();
+        let order = TestOrder {
+            thorough,
+            teaching: None,
+            number: 1,
+        };
+        let mut test = device.begin(&order, self.now);
+        let mut done = None;
+        loop {
+            match test.step(self.now, done.take().as_ref(), &self.image) {
+                Progress::Judged => return test,
+                Progress::Running(RunnerState::Wait(until)) => self.now = until,
+                Progress::Running(RunnerState::Job(job)) => done = Some(self.does(&job)),
+                Progress::Running(other) => panic!("a test that waits for nothing: {other:?}"),
+            }
+        }
+    }
+
+    fn does(&mut self, job: &Job) -> JobDone {
+        self.now = self.now + Span::ms(2);
+        match job {
+            Job::Set(outputs) => {
+                let all = DigitalOut::ALL
+                    .iter()
+                    .zip(self.points.outputs(DigitalOut::ALL));
+                let before = self.on.clone();
+                for (point, (handle, _)) in all {
+                    let state = outputs.iter().find(|it| it.0 == handle);
+                    match state.map(|it| it.1) {
+                        Some(true) => self.on.insert(*point),
+                        Some(false) => self.on.remove(point),
+                        None => panic!("{point} is left as it was"),
+                    };
+                }
+                self.check_cold(&before);
+                let on: Vec<&str> = self.on.iter().map(|it| it.name()).collect();
+                self.log.push(format!("set {}", on.join(" ")));
+                JobDone::new(self.now, None)
+            }
+            Job::Read(points) => {
+                self.scan(points);
+                JobDone::new(self.now, None)
+            }
+            Job::Query(queries) => self.runs(queries),
+            other => panic!("no test of this kind does {other:?}"),
+        }
+    }
+
+    /// No relay of the output switches while its source is on, unless a job has failed before.
+    fn check_cold(&self, before: &BTreeSet<DigitalOut>) {
+        use DigitalOut::{OutputPolarity, SmuLoad, SmuToOutput};
+        let moved = [OutputPolarity, SmuLoad, SmuToOutput];
+        let moved = moved
+            .iter()
+            .any(|it| before.contains(it) != self.on.contains(it));
+        let is_cold = self.source_v == 0.0 || self.has_failed;
+        assert!(!moved || is_cold, "switched at {} V", self.source_v);
+    }
+
+    fn scan(&mut self, points: &[Point]) {
+        let module = self
+            .wiring
+            .digital_in(self.points.input(DigitalIn::ProbeChain))
+            .module;
+        let mut word = 0;
+        for point in DigitalIn::ALL {
+            let terminal = self.wiring.digital_in(self.points.input(*point));
+            if self.sees(*point) != terminal.active_low {
+                word |= terminal.bit();
+            }
+        }
+        let [first, second] = u16::to_be_bytes(word);
+        let (line, command) = (self.wiring.module(module).line, self.wiring.poll(module));
+        let bits = Reply::Bits(Bits { first, second });
+        self.image
+            .accept(line, &command, &bits, "", self.now)
+            .unwrap();
+        for point in points.iter().filter(|it| matches!(it, Point::Analog(_))) {
+            let command = self.wiring.reads(&[*point])[0].1;
+            let steps = (self.part.residual_v * 0.01 / 10.0 * 32768.0).round() as i16;
+            let text = format!(">{steps:04X}");
+            let reply = command
+                .decode(format!("{text}\r").as_bytes(), false)
+                .unwrap();
+            self.image
+                .accept(line, &command, &reply, &text, self.now)
+                .unwrap();
+        }
+    }
+
+    fn sees(&self, point: DigitalIn) -> bool {
+        let is_on = |output| self.on.contains(&output);
+        let reversed = is_on(DigitalOut::OutputPolarity);
+        !self.part.dead.contains(&point)
+            && match point {
+                DigitalIn::ShortSeen => {
+                    let conducts = self.part.is_shorted || self.is_stuck;
+                    let conducts = conducts || (reversed && self.part.has_diode);
+                    is_on(DigitalOut::ShortCheck) && conducts
+                }
+                DigitalIn::KelvinInPlus
+                | DigitalIn::KelvinInMinus
+                | DigitalIn::KelvinOut1
+                | DigitalIn::KelvinOut2 => is_on(DigitalOut::KelvinTest),
+                DigitalIn::OutputSafe => self.part.residual_v < 30.0,
+                DigitalIn::LineOpen | DigitalIn::LoopOpen | DigitalIn::ProbeChain => true,
+            }
+    }
+
+    fn runs(&mut self, queries: &[Query]) -> JobDone {
+        self.rounds += 1;
+        let names: Vec<&str> = queries.iter().map(|it| it.program).collect();
+        self.log.push(format!("query {}", names.join(" ")));
+        let device = |query: &Query| {
+            let all = Device::ALL.iter().copied();
+            let mut own = all.filter(|it| self.points.instrument(*it) == query.instrument);
+            own.next().unwrap()
+        };
+        let devices: Vec<Device> = queries.iter().map(device).collect();
+        for (query, device) in queries.iter().zip(&devices) {
+            let profile = &self.wiring.instrument(query.instrument).profile;
+            profile.program(query.program, &query.arguments).unwrap();
+            if self.part.failing == Some((*device, query.program)) {
+                self.has_failed = true;
+                let why = Message::detail("unread", query.program);
+                return JobDone::new(self.now, Some(why));
+            }
+        }
+        let all = queries.iter().zip(devices);
+        let delivered = all.map(|(query, device)| self.delivers(device, query));
+        JobDone {
+            delivered: delivered.collect(),
+            ..JobDone::new(self.now, None)
+        }
+    }
+
+    fn delivers(&mut self, device: Device, query: &Query) -> Delivered {
+        let given = |name: &str| {
+            let mut own = query.arguments.iter().filter(|it| it.0 == name);
+            own.next().unwrap().1
+        };
+        let mut numbers = match (device, query.program) {
+            (Device::SmuIn, "source" | "level") => {
+                self.control(given("level_v"));
+                Vec::new()
+            }
+            (Device::SmuIn, "source_and_read") => {
+                self.control(given("level_v"));
+                let ampere = self.input_a(given("level_v")).min(given("limit_a"));
+                vec![ampere.max(-given("limit_a")); 2]
+            }
+            (Device::SmuIn, "step") => {
+                self.control(given("before_v"));
+                self.control(given("level_v"));
+                vec![self.input_a(given("before_v"))]
+            }
+            (Device::SmuIn | Device::SmuOut, "off") => {
+                match device {
+                    Device::SmuIn => self.control(0.0),
+                    _ => self.source_v = 0.0,
+                }
+                Vec::new()
+            }
+            (Device::SmuOut, "source") => {
+                self.source_v = given("level_v");
+                Vec::new()
+            }
+            (Device::SmuOut, "source_and_read") => {
+                self.source_v = given("level_v");
+                vec![self.output_a().min(given("limit_a")); 2]
+            }
+            (Device::SmuOut, "read") => vec![self.output_a()],
+            (Device::SmuOut, "drop_at_current") => {
+                assert!(self.is_lit, "a drop of a blocked output");
+                self.source_v = 1.0;
+                vec![(self.part.ohm * given("level_a")).min(given("limit_v"))]
+            }
+            (Device::SmuOut, "drops_over_time") => {
+                self.is_heated = true;
+                let count = given("count") as usize;
+                let settled = |at: usize| 1.0 - (-(at as f64) * 0.02 / 0.03).exp();
+                let drop = |at| self.part.ohm * given("level_a") + self.part.rise_v * settled(at);
+                let drops: Vec<f64> = (0..count).map(drop).collect();
+                [vec![drops[count - 1]], drops].concat()
+            }
+            (Device::PulseSource, "train") => {
+                self.pulse_s = given("width_s");
+                Vec::new()
+            }
+            (Device::Digitizer, "capture") => {
+                self.record_s = (10.0 * given("s_per_div"), given("points"));
+                Vec::new()
+            }
+            (Device::PulseSource, "start") => {
+                assert!(self.on.contains(&DigitalOut::DriveSelect));
+                Vec::new()
+            }
+            (Device::Digitizer, "complete") | (Device::PulseSource, "off") => Vec::new(),
+            (Device::Digitizer, "waveform") => {
+                return Delivered {
+                    numbers: Vec::new(),
+                    waveform: Some(Arc::new(self.waveform(given("channel")))),
+                };
+            }
+            (device, program) => panic!("{device} runs {program}"),
+        };
+        if let Some((program, instead)) = &self.part.spoiled
+            && *program == query.program
+        {
+            numbers = instead.clone();
+        }
+        Delivered {
+            numbers,
+            waveform: None,
+        }
+    }
+
+    fn input_a(&self, volts: f64) -> f64 {
+        match volts {
+            0.0 => 0.0,
+            volts if volts < 0.0 => -self.part.reverse_a,
+            _ => self.part.input_a,
+        }
+    }
+
+    fn control(&mut self, volts: f64) {
+        if volts >= self.part.turn_on_v {
+            self.is_lit = true;
+            let is_loaded = self.on.contains(&DigitalOut::SmuLoad);
+            let loaded = is_loaded && volts >= self.part.sticks_loaded_v;
+            self.is_stuck |= loaded || volts >= self.part.sticks_at_v;
+        } else if volts < self.part.turn_off_v {
+            self.is_lit = self.is_stuck;
+        }
+    }
+
+    fn output_a(&self) -> f64 {
+        let is_on = |output| self.on.contains(&output);
+        assert!(is_on(DigitalOut::SmuToOutput) && is_on(DigitalOut::BleedOpen));
+        let load_ohm = f64::from(u8::from(is_on(DigitalOut::SmuLoad))) * 1000.0;
+        if self.part.is_turned {
+            let forward = !is_on(DigitalOut::OutputPolarity);
+            return f64::from(u8::from(forward)) * 1.9e-3;
+        }
+        match (self.is_lit, self.is_heated) {
+            (true, _) => self.source_v / (load_ohm + self.part.ohm),
+            (false, true) => self.part.hot_leakage_a,
+            (false, false) => self.part.leakage_a,
+        }
+    }
+
+    fn waveform(&self, channel: f64) -> Waveform {
+        let (record_s, points) = self.record_s;
+        let (step_s, start_s) = (record_s / points, -0.1 * record_s);
+        let (part, edge_s) = (&self.part, 20e-6);
+        let at = |index: usize| start_s + (index as f64 + 0.3) * step_s;
+        let pulse = |at_s: f64| f64::from(u8::from((0.0..self.pulse_s).contains(&at_s)));
+        let load = |at_s: f64| {
+            let on = (at_s - part.on_s) / edge_s + 0.9;
+            let off = 0.1 - (at_s - self.pulse_s - part.off_s) / edge_s;
+            on.clamp(0.0, 1.0).min(off.clamp(0.0, 1.0))
+        };
+        let volts = |at_s: f64| match channel {
+            1.0 => 5.0 * pulse(at_s),
+            3.0 => 8.0 - 7.99 * load(at_s),
+            other => panic!("channel {other}"),
+        };
+        Waveform {
+            start_s: start_s + 0.3 * step_s,
+            step_s,
+            volts: (0..points as usize)
+                .map(|it| volts(at(it)) as f32)
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! A recipe of a solid-state relay on a rig.
+
+use super::measure::Test;
+use super::plan::Plan;
+use super::points::Points;
+use super::recipe::SsrRecipe;
+use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
+use crate::dut::{Procedure, Recipe};
+use crate::rig::point::MissingPoint;
+use std::sync::Arc;
+use units::RigTime;
+
+/// A recipe on a rig; the same for every part.
+#[derive(Debug, Clone)]
+pub struct Device {
+    /// The recipe.
+    pub recipe: Arc<Recipe>,
+    /// Levels, ranges and times.
+    pub plan: Arc<Plan>,
+    /// Points and instruments.
+    pub points: Arc<Points>,
+}
+
+impl Device {
+    /// Resolves points, instruments and ranges of the recipe on a rig.
+    ///
+    /// # Errors
+    /// Fails with the first point or instrument that the rig lacks, an instrument without a range for the test included.
+    pub fn new(recipe: Arc<Recipe>, ssr: &SsrRecipe, rig: &Rig) -> Result<Self, MissingPoint> {
+        let points = Points::resolve(rig.wiring)?;
+        let plan = Plan::of(
+            ssr,
+            &recipe.limits,
+            recipe.decision.rule,
+            &points,
+            rig.wiring,
+        );
+        let plan = plan.map_err(|lack| MissingPoint {
+            section: "instrument",
+            name: lack.device.name(),
+        })?;
+        Ok(Self {
+            recipe,
+            plan: Arc::new(plan),
+            points: Arc::new(points),
+        })
+    }
+}
+
+impl DeviceUnderTest for Device {
+    fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
+        Procedure::Ssr(Box::new(Test::begin(self.clone(), order, now)))
+    }
+}

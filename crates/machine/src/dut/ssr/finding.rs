@@ -1,0 +1,120 @@
+//! Findings of the test of a solid-state relay beside its figures.
+
+use super::bins;
+use super::parameter::Parameter;
+use crate::dut::Reason;
+use crate::dut::finding::Entry;
+use crate::gauge::Side;
+
+/// A finding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Finding {
+    /// A force probe and its sense probe touch no common pin; detail: the pins.
+    PinOpen,
+    /// The probes are not up.
+    ProbeChainOpen,
+    /// The LED conducts between the pins of the output: the part lies turned in the nest.
+    Turned,
+    /// The output is shorted, or conducts below 1 kohm.
+    Shorted,
+    /// No current flows into the control input.
+    InputOpen,
+    /// The current into the control input is at its limit.
+    InputShorted,
+    /// The reversed control input conducts up to the limit of the current.
+    InputConductsReversed,
+    /// The leakage at the rated voltage is at the limit of the current.
+    Leaks,
+    /// The leakage after conduction is at the limit of the current.
+    LeaksHot,
+    /// The output conducts at the voltage at which it must block.
+    ConductsBelowTurnOff,
+    /// The output conducts without control after it has conducted once.
+    StuckOn,
+    /// The output does not conduct at the nominal control voltage.
+    NeverOn,
+    /// The output does not conduct at the voltage at which it must conduct.
+    BlocksAboveTurnOn,
+    /// The output does not conduct before the pulse ends.
+    TurnsOnTooLate,
+    /// The output conducts to the end of the record.
+    TurnsOffTooLate,
+    /// The drop of the conducting output is at the limit of the voltage.
+    DropTooHigh,
+    /// The record of the digitizer holds no control pulse, or no whole one.
+    PulseNotRecorded,
+    /// An instrument has delivered other values than its programs return; detail: the instrument.
+    NotDelivered,
+}
+
+impl Finding {
+    /// Every finding.
+    pub const ALL: [Self; 18] = [
+        Self::PinOpen,
+        Self::ProbeChainOpen,
+        Self::Turned,
+        Self::Shorted,
+        Self::InputOpen,
+        Self::InputShorted,
+        Self::InputConductsReversed,
+        Self::Leaks,
+        Self::LeaksHot,
+        Self::ConductsBelowTurnOff,
+        Self::StuckOn,
+        Self::NeverOn,
+        Self::BlocksAboveTurnOn,
+        Self::TurnsOnTooLate,
+        Self::TurnsOffTooLate,
+        Self::DropTooHigh,
+        Self::PulseNotRecorded,
+        Self::NotDelivered,
+    ];
+
+    /// Returns the code of the finding and its consequence for the part.
+    pub fn entry(self) -> Entry {
+        use Parameter as P;
+        use Side::{High, Low};
+        let input = |code| Entry::fail(code, bins::INPUT);
+        let output = |code| Entry::fail(code, bins::OUTPUT);
+        match self {
+            Self::PinOpen => Entry::void("ssr_pin_open"),
+            Self::ProbeChainOpen => Entry::void("ssr_probe_chain_open"),
+            Self::Turned => Entry::void("ssr_turned"),
+            Self::Shorted => output("ssr_shorted"),
+            Self::InputOpen => input("ssr_input_open").proves(P::InputCurrent, Low),
+            Self::InputShorted => input("ssr_input_shorted").proves(P::InputCurrent, High),
+            Self::InputConductsReversed => {
+                input("ssr_input_conducts_reversed").proves(P::ReverseCurrent, High)
+            }
+            Self::Leaks => Entry::fail("ssr_leaks", bins::LEAKAGE).proves(P::LeakageCold, High),
+            Self::LeaksHot => {
+                Entry::fail("ssr_leaks_hot", bins::LEAKAGE).proves(P::LeakageHot, High)
+            }
+            Self::ConductsBelowTurnOff => {
+                input("ssr_conducts_below_turn_off").proves(P::TurnOffVoltage, Low)
+            }
+            Self::StuckOn => output("ssr_stuck_on"),
+            Self::NeverOn => output("ssr_never_on"),
+            Self::BlocksAboveTurnOn => {
+                input("ssr_blocks_above_turn_on").proves(P::TurnOnVoltage, High)
+            }
+            Self::TurnsOnTooLate => {
+                Entry::fail("ssr_turns_on_too_late", bins::TIME).proves(P::TurnOnTime, High)
+            }
+            Self::TurnsOffTooLate => {
+                Entry::fail("ssr_turns_off_too_late", bins::TIME).proves(P::TurnOffTime, High)
+            }
+            Self::DropTooHigh => output("ssr_drop_too_high").proves(P::OnResistance, High),
+            Self::PulseNotRecorded => Entry::void("ssr_pulse_not_recorded"),
+            Self::NotDelivered => Entry::void("ssr_not_delivered"),
+        }
+    }
+
+    /// Returns the reason with `detail`, the names that its text contains.
+    pub fn with(self, detail: impl Into<String>) -> Reason {
+        Reason {
+            detail: detail.into(),
+            ..self.into()
+        }
+    }
+}

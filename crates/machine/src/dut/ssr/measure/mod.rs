@@ -1,0 +1,227 @@
+//! Test of one part: the order of its stages, safe first.
+//!
+//! ```text
+//! pins -> short check -> input -> leakage -> blocks at V_off -> conducts at V_on -> thresholds -> times
+//!      -> resistance -> leakage again -> sources off -> discharge -> verdict
+//! ```
+//! A finding ends the measuring stages; a figure outside its limit does not. Every test ends with the discharge,
+//! whatever has ended it. When a job fails, the fixture disconnects the sources first, by modules whose watchdog needs
+//! no instrument, and the instruments follow. A socket that is not proven to be below 30 V is trouble of the rig.
+//!
+//! A result inside the guard band, and in a thorough test every result, is measured again at once, `slow_repeats` times.
+
+mod board;
+mod conformity;
+mod contact;
+mod discharge;
+mod given;
+mod input;
+mod leakage;
+mod resistance;
+mod stage;
+mod state;
+mod threshold;
+mod timing;
+
+pub use stage::Stage;
+pub use state::State;
+
+use super::device::Device;
+use super::parameter::Parameter;
+use crate::dut::device::TestOrder;
+use crate::dut::procedure::{Progress, TestProcedure};
+use crate::dut::record::{Stop, TestRecord};
+use crate::dut::{Characteristic, Kind, Verdict};
+use crate::gauge::Judgement;
+use crate::instrument::act::{JobDone, Runner, RunnerState};
+use crate::rig::image::Image;
+use crate::rig::supply::RangeMismatch;
+use state::Next;
+use std::collections::VecDeque;
+use texts::Message;
+use units::RigTime;
+
+/// A test under way.
+#[derive(Debug)]
+pub struct Test {
+    device: Device,
+    state: State,
+    stage: Stage,
+    stages: VecDeque<Stage>,
+    runner: Runner,
+    thorough: bool,
+    number: u8,
+    /// Repetitions left for the stage under way; none before its first result.
+    repeats_left: Option<u32>,
+    began: RigTime,
+}
+
+impl Test {
+    /// Begins with the pins; the probes are up.
+    pub fn begin(device: Device, order: &TestOrder, now: RigTime) -> Self {
+        let mut stages: VecDeque<Stage> = stage::order(&device.plan).into();
+        stages.extend([Stage::SourcesOff, Stage::Discharge]);
+        let mut state = State::default();
+        let stage = stages.pop_front().unwrap_or(Stage::Discharge);
+        let acts = state.acts(stage, &device.plan, &device.points);
+        Self {
+            runner: Runner::new(acts, now),
+            device,
+            state,
+            stage,
+            stages,
+            thorough: order.thorough,
+            number: order.number,
+            repeats_left: None,
+            began: now,
+        }
+    }
+
+    fn enter(&mut self, stage: Stage, now: RigTime) {
+        if stage != self.stage {
+            self.repeats_left = None;
+        }
+        self.stage = stage;
+        let acts = self
+            .state
+            .acts(stage, &self.device.plan, &self.device.points);
+        self.runner = Runner::new(acts, now);
+    }
+
+    fn book(&mut self, now: RigTime) {
+        let record = &mut self.state.record;
+        record.spent.add(self.runner.spent());
+        record.took(self.stage.key(), now.since(self.began));
+        let seen = std::mem::take(&mut self.runner.readings.trace);
+        record.trace.append(seen);
+        self.began = now;
+    }
+
+    /// Ends the measuring after a failed job: the modules disconnect first.
+    fn abandon(&mut self, why: Message) {
+        self.state.record.trouble(why);
+        self.stages.clear();
+        match self.stage {
+            Stage::Discharge => {}
+            Stage::SourcesOff if self.state.is_discharged => {}
+            Stage::SourcesOff => self.stages.push_back(Stage::Discharge),
+            _ => self.stages.extend([Stage::Discharge, Stage::SourcesOff]),
+        }
+    }
+
+    fn conclude(&mut self, now: RigTime) {
+        self.book(now);
+        let readings = std::mem::take(&mut self.runner.readings);
+        let (plan, points) = (&self.device.plan, &self.device.points);
+        let next = self.state.conclude(self.stage, plan, points, &readings);
+        if matches!(self.stage, Stage::SourcesOff | Stage::Discharge) {
+            return;
+        }
+        if self.state.record.stopped() {
+            self.stages = VecDeque::from([Stage::SourcesOff, Stage::Discharge]);
+        } else if let Next::Insert(stage) = next {
+            self.stages.push_front(stage);
+        } else if self.repeats() {
+            self.stages.push_front(self.stage);
+        }
+    }
+
+    /// Returns true when the stage under way must measure again, and counts it.
+    fn repeats(&mut self) -> bool {
+        let measured = self.stage.measures();
+        let is_near = |(of, judgement): &(Characteristic, Judgement)| {
+            let own = measured.iter().any(|it| Characteristic::from(*it) == *of);
+            own && matches!(judgement, Judgement::Conditional(_))
+        };
+        let left = match self.repeats_left {
+            Some(left) => left,
+            None if measured.is_empty() => 0,
+            None if self.thorough || self.judgements().iter().any(is_near) => {
+                self.device.recipe.decision.slow_repeats
+            }
+            None => 0,
+        };
+        self.repeats_left = Some(left.saturating_sub(1));
+        left > 0
+    }
+}
+
+impl TestProcedure for Test {
+    fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        let mut done = done;
+        loop {
+            match self.runner.step(now, done.take(), image) {
+                RunnerState::Done => self.conclude(now),
+                RunnerState::Trouble(why) => {
+                    self.book(now);
+                    self.abandon(why);
+                }
+                waiting @ (RunnerState::Job(_) | RunnerState::Busy | RunnerState::Wait(_)) => {
+                    return Progress::Running(waiting);
+                }
+            }
+            let Some(stage) = self.stages.pop_front() else {
+                return Progress::Judged;
+            };
+            self.enter(stage, now);
+        }
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Ssr
+    }
+
+    fn range_mismatch(&self) -> Option<&RangeMismatch> {
+        None
+    }
+
+    fn is_live(&self) -> bool {
+        !self.state.is_discharged
+    }
+
+    fn number(&self) -> u8 {
+        self.number
+    }
+
+    fn stage(&self) -> &'static str {
+        self.stage.name()
+    }
+
+    fn why_stopped(&self) -> Option<&Stop> {
+        self.state.record.why_stopped()
+    }
+
+    /// Judges each result; what the conformity tests have proven takes the place of a judged voltage.
+    fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
+        let judge = |of: Parameter| match self.state.proof(of) {
+            Some(judgement) => vec![(of, judgement)],
+            None => self.state.record.judged(&self.device.recipe, [of]),
+        };
+        let all = Parameter::ALL.into_iter().flat_map(judge);
+        all.map(|(of, judgement)| (of.into(), judgement)).collect()
+    }
+
+    /// Returns the verdict; a voltage without limit and without search is not expected.
+    fn verdict(&self) -> Verdict {
+        let plan = &self.device.plan;
+        let is_measured = |of: &Parameter| match of {
+            Parameter::TurnOnVoltage => plan.searches || plan.turn_on_v.is_some(),
+            Parameter::TurnOffVoltage => plan.searches || plan.turn_off_v.is_some(),
+            _ => true,
+        };
+        let expected = Parameter::ALL.into_iter().filter(is_measured);
+        let expected: Vec<Characteristic> = expected.map(Into::into).collect();
+        Verdict::after(self.why_stopped(), &expected, self.judgements())
+    }
+
+    fn record(&self) -> TestRecord {
+        self.state.record.clone()
+    }
+
+    fn take_record(&mut self) -> TestRecord {
+        std::mem::take(&mut self.state.record)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,78 @@
+//! Turn-on and turn-off voltage by halved steps. The output switches with hysteresis, so each step begins from 0 V, or
+//! from the nominal voltage for the turn-off.
+
+use super::conformity::conducts;
+use super::given::{Given, NotDelivered};
+use super::stage::Stage;
+use super::state::{Next, State};
+use crate::dut::ssr::accuracy;
+use crate::dut::ssr::parameter::Parameter;
+use crate::dut::ssr::plan::Plan;
+use crate::dut::ssr::points::{Device, Points};
+use crate::dut::ssr::search::{Direction, Search};
+use crate::gauge::Judgement;
+use crate::instrument::act::Act;
+use units::Unit;
+
+/// Returns the acts of one step; none when no interval is proven to hold the threshold.
+pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Points) -> Vec<Act> {
+    let Some(search) = state.search.or_else(|| interval(state, direction, plan)) else {
+        return Vec::new();
+    };
+    state.search = Some(search);
+    let before_v = match direction {
+        Direction::Rising => 0.0,
+        Direction::Falling => plan.control_v,
+    };
+    let step = points.step(Device::SmuIn, before_v, search.middle_v());
+    vec![
+        Act::Query(vec![step]),
+        Act::Wait(plan.dwell(search.done)),
+        Act::Query(vec![points.read(Device::SmuOut)]),
+    ]
+}
+
+/// Returns the interval that holds the threshold: the output is proven to block at its lower end and to conduct at its
+/// upper end.
+fn interval(state: &State, direction: Direction, plan: &Plan) -> Option<Search> {
+    let obeys = |of| state.proof(of).unwrap_or(Judgement::Pass) == Judgement::Pass;
+    if !obeys(Parameter::TurnOnVoltage) || !obeys(Parameter::TurnOffVoltage) {
+        return None;
+    }
+    let low_v = plan.turn_off_v.unwrap_or(0.0);
+    let high_v = plan.turn_on_v.unwrap_or(plan.control_v);
+    Some(match direction {
+        Direction::Rising => Search::between(low_v, high_v),
+        Direction::Falling => Search::between(low_v, state.turn_on_v.unwrap_or(high_v)),
+    })
+}
+
+/// Concludes one step; after the last one the threshold is known.
+pub fn conclude(
+    state: &mut State,
+    direction: Direction,
+    plan: &Plan,
+    given: &Given,
+) -> Result<Next, NotDelivered> {
+    let Some(mut search) = state.search else {
+        return Ok(Next::Planned);
+    };
+    let [ampere] = given.singles(Device::SmuOut)?;
+    search.halve(conducts(ampere));
+    if search.done < plan.steps {
+        state.search = Some(search);
+        return Ok(Next::Insert(Stage::Threshold(direction)));
+    }
+    state.search = None;
+    let of = match direction {
+        Direction::Rising => {
+            state.turn_on_v = Some(search.high_v);
+            Parameter::TurnOnVoltage
+        }
+        Direction::Falling => Parameter::TurnOffVoltage,
+    };
+    let volts = search.middle_v();
+    let budget = accuracy::threshold(plan, volts, search.width_v());
+    state.found([(of, volts, Unit::Volt, budget)]);
+    Ok(Next::Planned)
+}

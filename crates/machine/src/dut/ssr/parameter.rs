@@ -1,0 +1,93 @@
+//! Characteristics of a solid-state relay, as data.
+
+use super::bins;
+use crate::dut::characteristic::{Characteristic, Definition, KindCharacteristic};
+use crate::gauge::repetition::MeanOf;
+use crate::rig::bin::Bin;
+use units::Unit;
+
+/// Characteristic of a solid-state relay with a DC output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Parameter {
+    /// Control voltage at which the output begins to conduct.
+    TurnOnVoltage,
+    /// Control voltage at which the output ceases to conduct.
+    TurnOffVoltage,
+    /// Current of the control input at the nominal control voltage.
+    InputCurrent,
+    /// Current of the reversed control input.
+    ReverseCurrent,
+    /// Time from the control edge to 90 % of the load voltage.
+    TurnOnTime,
+    /// Time from the control edge to 10 % of the load voltage.
+    TurnOffTime,
+    /// Drop of the conducting output at its rated current.
+    Drop,
+    /// Resistance of the conducting output.
+    OnResistance,
+    /// Current of the blocked output at its rated voltage, before the output has conducted.
+    LeakageCold,
+    /// The same after the output has conducted.
+    LeakageHot,
+    /// Rise of the drop from 10 ms to 200 ms after the current has begun.
+    Drift,
+}
+
+impl Parameter {
+    /// Every characteristic, in the order of reports.
+    pub const ALL: [Self; 11] = [
+        Self::TurnOnVoltage,
+        Self::TurnOffVoltage,
+        Self::InputCurrent,
+        Self::ReverseCurrent,
+        Self::TurnOnTime,
+        Self::TurnOffTime,
+        Self::Drop,
+        Self::OnResistance,
+        Self::LeakageCold,
+        Self::LeakageHot,
+        Self::Drift,
+    ];
+}
+
+impl KindCharacteristic for Parameter {
+    fn definition(&self) -> &'static Definition {
+        &DEFINITIONS[*self as usize]
+    }
+}
+
+static DEFINITIONS: [Definition; Parameter::ALL.len()] = [
+    part("v_on_v", Unit::Volt, bins::INPUT),
+    part("v_off_v", Unit::Volt, bins::INPUT),
+    part("i_in_ma", Unit::Milliampere, bins::INPUT),
+    part("i_rev_ua", Unit::Microampere, bins::INPUT),
+    operation("t_on_us"),
+    operation("t_off_us"),
+    part("v_drop_v", Unit::Volt, bins::OUTPUT),
+    part("r_on_mohm", Unit::Milliohm, bins::OUTPUT),
+    part("i_leak_ua", Unit::Microampere, bins::LEAKAGE),
+    part("i_leak_hot_ua", Unit::Microampere, bins::LEAKAGE),
+    part("drift_mv", Unit::Millivolt, bins::OUTPUT),
+];
+
+const fn part(key: &'static str, unit: Unit, bin: Bin) -> Definition {
+    Definition {
+        key,
+        unit,
+        mean_of: MeanOf::Part,
+        bin,
+    }
+}
+
+const fn operation(key: &'static str) -> Definition {
+    Definition {
+        mean_of: MeanOf::Operation,
+        ..part(key, Unit::Microsecond, bins::TIME)
+    }
+}
+
+impl From<Parameter> for Characteristic {
+    fn from(parameter: Parameter) -> Self {
+        Self::Ssr(parameter)
+    }
+}

@@ -1,0 +1,162 @@
+//! Points and instruments of the fixture that measures a solid-state relay. `rig.toml` wires them.
+
+use crate::instrument::act::Word;
+use crate::instrument::query::Instrument;
+use crate::rig::point::{
+    AnalogInput, DigitalInput, DigitalOutput, Fixture, MissingPoint, Quantity, Switch,
+};
+use crate::rig::wiring::Wiring;
+use std::sync::Arc;
+
+named! {
+    /// Inputs from the fixture; `true` means that the named condition holds, whatever the polarity of the wire.
+    DigitalIn {
+        KelvinInPlus = "kelvin_in_plus",
+        KelvinInMinus = "kelvin_in_minus",
+        KelvinOut1 = "kelvin_out_1",
+        KelvinOut2 = "kelvin_out_2",
+        LineOpen = "line_open",
+        LoopOpen = "loop_open",
+        OutputSafe = "output_safe",
+        ShortSeen = "short_seen",
+        ProbeChain = "probe_chain",
+    }
+}
+
+named! {
+    /// Outputs to the fixture; all are off when the rig is safe.
+    DigitalOut {
+        LineContactor = "line_contactor",
+        LoopContactor = "loop_contactor",
+        SmuToOutput = "smu_to_output",
+        SmuLoad = "smu_load",
+        OutputPolarity = "output_polarity",
+        DriveSelect = "drive_select",
+        Reference0 = "reference_0",
+        Reference1 = "reference_1",
+        LoadSelect = "load_select",
+        ShortCheck = "short_check",
+        KelvinTest = "kelvin_test",
+        BleedOpen = "bleed_open",
+    }
+}
+
+named! {
+    /// Instruments of the fixture, by their names in `rig.toml`.
+    Device {
+        SmuIn = "smu_in",
+        SmuOut = "smu_out",
+        Digitizer = "digitizer",
+        PulseSource = "pulse_source",
+    }
+}
+
+/// Input that reads the voltage at the socket apart from all instruments.
+const RESIDUAL: &str = "residual_voltage";
+/// Signal of all inputs of the fixture, a bit each.
+pub const FIXTURE_SIGNAL: &str = "fixture";
+
+/// Every point of this kind that `rig.toml` may have.
+pub const FIXTURE: Fixture = Fixture {
+    digital_in: DigitalIn::NAMES,
+    digital_out: &SWITCHES,
+    analog_in: &[Quantity {
+        name: RESIDUAL,
+        unit: "V",
+        step: 1e-2,
+        enabled: true,
+        ranged: false,
+    }],
+    analog_out: &[],
+    temperature: &[
+        "nest_temperature",
+        "ambient_temperature",
+        "track_temperature",
+    ],
+    counter: &[],
+};
+
+const SWITCHES: [Switch; DigitalOut::COUNT] = {
+    let mut all = [Switch {
+        name: "",
+        traced: true,
+    }; DigitalOut::COUNT];
+    let mut at = 0;
+    while at < DigitalOut::COUNT {
+        all[at].name = DigitalOut::NAMES[at];
+        at += 1;
+    }
+    all
+};
+
+/// Points and instruments as this rig has wired them.
+#[derive(Debug, Clone)]
+pub struct Points {
+    inputs: [DigitalInput; DigitalIn::COUNT],
+    outputs: [DigitalOutput; DigitalOut::COUNT],
+    instruments: [Instrument; Device::COUNT],
+    /// Input that reads the voltage at the socket.
+    pub residual: AnalogInput,
+    /// Every digital input, read together.
+    pub fixture: Arc<Word>,
+}
+
+impl Points {
+    /// Resolves every point and instrument.
+    ///
+    /// # Errors
+    /// Fails with the first one that the rig lacks.
+    pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
+        let inputs = all("digital_in", DigitalIn::NAMES, |it| {
+            wiring.digital_input(it)
+        })?;
+        let outputs = all("digital_out", DigitalOut::NAMES, |it| {
+            wiring.digital_output(it)
+        })?;
+        let [residual] = all("analog_in", &[RESIDUAL], |it| wiring.analog_input(it))?;
+        let instruments = all("instrument", Device::NAMES, |it| {
+            wiring.instrument_named(it)
+        })?;
+        let fixture = Arc::new(Word {
+            name: FIXTURE_SIGNAL,
+            inputs: inputs.to_vec(),
+        });
+        Ok(Self {
+            inputs,
+            outputs,
+            instruments,
+            residual,
+            fixture,
+        })
+    }
+
+    /// Returns an input of the fixture.
+    pub fn input(&self, point: DigitalIn) -> DigitalInput {
+        self.inputs[point.index()]
+    }
+
+    /// Returns every output of the fixture with its state; those in `on` are on.
+    pub fn outputs(&self, on: &[DigitalOut]) -> Vec<(DigitalOutput, bool)> {
+        let all = DigitalOut::ALL.iter();
+        all.map(|it| (self.outputs[it.index()], on.contains(it)))
+            .collect()
+    }
+
+    /// Returns an instrument.
+    pub fn instrument(&self, device: Device) -> Instrument {
+        self.instruments[device.index()]
+    }
+}
+
+fn all<T: Copy, const N: usize>(
+    section: &'static str,
+    names: &[&'static str],
+    handle: impl Fn(&str) -> Option<T>,
+) -> Result<[T; N], MissingPoint> {
+    assert_eq!(names.len(), N, "a handle for each name");
+    let mut found = Vec::with_capacity(N);
+    for name in names {
+        found.push(handle(name).ok_or(MissingPoint { section, name })?);
+    }
+    Ok(std::array::from_fn(|at| found[at]))
+}

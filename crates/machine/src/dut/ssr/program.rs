@@ -1,0 +1,147 @@
+//! Queries of the test: programs of the profiles with their arguments.
+
+use super::plan::{CurrentRange, LOAD_V, PERIOD_S, PULSE_OHM, Plan};
+use super::points::{Device, Points};
+use crate::instrument::query::Query;
+
+/// Channel of the digitizer at the control input.
+pub const CONTROL_CHANNEL: f64 = 1.0;
+/// Channel of the digitizer at the output, clamped to +-10 V.
+pub const OUTPUT_CHANNEL: f64 = 3.0;
+/// Instant, s, up to which the drop is read.
+const DRIFT_S: f64 = 0.2;
+/// Vertical divisions from the middle of the screen to its edge, with room.
+const HALF_SCREEN: f64 = 3.5;
+/// Horizontal divisions of a record.
+const DIVISIONS: f64 = 10.0;
+/// Share of a record before the trigger.
+const BEFORE: f64 = 0.1;
+
+/// Returns the number of readings of the drop over time: one period of the mains each, the last two around 200 ms.
+pub fn drop_count() -> usize {
+    (DRIFT_S / PERIOD_S).round() as usize + 1
+}
+
+impl Points {
+    fn query(
+        &self,
+        device: Device,
+        program: &'static str,
+        arguments: &[(&'static str, f64)],
+    ) -> Query {
+        Query {
+            instrument: self.instrument(device),
+            program,
+            arguments: arguments.to_vec(),
+        }
+    }
+
+    fn ranged(
+        &self,
+        device: Device,
+        program: &'static str,
+        level_v: f64,
+        range: &CurrentRange,
+    ) -> Query {
+        let arguments = [
+            ("range_v", range.source.full_scale),
+            ("limit_a", range.meter.full_scale),
+            ("range_a", range.meter.full_scale),
+            ("periods", range.periods),
+            ("level_v", level_v),
+        ];
+        self.query(device, program, &arguments)
+    }
+
+    /// Sets a voltage with its ranges.
+    pub fn source(&self, device: Device, level_v: f64, range: &CurrentRange) -> Query {
+        self.ranged(device, "source", level_v, range)
+    }
+
+    /// Sets a voltage with its ranges and reads the current twice.
+    pub fn source_and_read(&self, device: Device, level_v: f64, range: &CurrentRange) -> Query {
+        self.ranged(device, "source_and_read", level_v, range)
+    }
+
+    /// Sets another voltage in the same ranges.
+    pub fn level(&self, device: Device, level_v: f64) -> Query {
+        self.query(device, "level", &[("level_v", level_v)])
+    }
+
+    /// Holds `before_v` for one reading, then sets `level_v`.
+    pub fn step(&self, device: Device, before_v: f64, level_v: f64) -> Query {
+        let arguments = [("before_v", before_v), ("level_v", level_v)];
+        self.query(device, "step", &arguments)
+    }
+
+    /// Reads once.
+    pub fn read(&self, device: Device) -> Query {
+        self.query(device, "read", &[])
+    }
+
+    /// Sets a source to 0 and takes its output off.
+    pub fn off(&self, device: Device) -> Query {
+        self.query(device, "off", &[])
+    }
+
+    /// Reads the drop at `ampere`.
+    pub fn drop_at(&self, plan: &Plan, ampere: f64) -> Query {
+        let (source, meter) = (&plan.drop.source, &plan.drop.meter);
+        let arguments = [
+            ("range_a", source.full_scale),
+            ("limit_v", meter.full_scale),
+            ("range_v", meter.full_scale),
+            ("periods", 1.0),
+            ("level_a", ampere),
+        ];
+        self.query(Device::SmuOut, "drop_at_current", &arguments)
+    }
+
+    /// Reads the drop [`drop_count`] times from the instant at which `ampere` begins.
+    pub fn drops(&self, ampere: f64) -> Query {
+        let arguments = [("count", drop_count() as f64), ("level_a", ampere)];
+        self.query(Device::SmuOut, "drops_over_time", &arguments)
+    }
+
+    /// Prepares one control pulse. `input_a` is the current of the input, A, whose drop in the source is made up for.
+    pub fn train(&self, plan: &Plan, input_a: f64) -> Query {
+        let width_s = plan.pulse_s();
+        let arguments = [
+            ("level_v", plan.control_v + PULSE_OHM * input_a),
+            ("period_s", 2.0 * width_s),
+            ("width_s", width_s),
+            ("pulses", 1.0),
+        ];
+        self.query(Device::PulseSource, "train", &arguments)
+    }
+
+    /// Sends the pulse.
+    pub fn start(&self) -> Query {
+        self.query(Device::PulseSource, "start", &[])
+    }
+
+    /// Arms the digitizer.
+    pub fn capture(&self, plan: &Plan) -> Query {
+        let record_s = plan.record_s();
+        let arguments = [
+            ("control_v_per_div", plan.control_v / HALF_SCREEN),
+            ("output_v_per_div", LOAD_V / HALF_SCREEN),
+            ("s_per_div", record_s / DIVISIONS),
+            ("offset_s", (0.5 - BEFORE) * record_s),
+            ("points", plan.samples()),
+            ("level_v", plan.control_v / 2.0),
+        ];
+        self.query(Device::Digitizer, "capture", &arguments)
+    }
+
+    /// Proves that the record is complete.
+    pub fn complete(&self) -> Query {
+        self.query(Device::Digitizer, "complete", &[])
+    }
+
+    /// Reads one channel of the record.
+    pub fn waveform(&self, plan: &Plan, channel: f64) -> Query {
+        let arguments = [("channel", channel), ("points", plan.samples())];
+        self.query(Device::Digitizer, "waveform", &arguments)
+    }
+}

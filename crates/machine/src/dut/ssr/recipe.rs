@@ -1,0 +1,111 @@
+//! Solid-state relay part of a recipe: the part, and how to measure it.
+
+use super::feasible;
+use super::{card, made_up};
+use crate::dut::card::Card;
+use crate::dut::device::Rig;
+use crate::dut::made_up::MadeUp;
+use crate::dut::recipe::{KindRecipe, Limits, PartFacts};
+use crate::dut::rejudge::UNCONVERTED;
+use crate::dut::{Calibration, Device, Kind, Recipe};
+use crate::rig::fault::Fault;
+use crate::rig::point::MissingPoint;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The sections `[part]` and `[test]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SsrRecipe {
+    /// The part.
+    pub part: PartData,
+    /// How the part is measured.
+    pub test: TestPlan,
+}
+
+/// What the output switches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Output {
+    /// A DC load, with MOSFETs.
+    Dc,
+}
+
+/// Data of the part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartData {
+    /// Body along x, y, z as it lies in the nest, mm.
+    pub body_mm: [f64; 3],
+    /// Length of the pins below the body, mm.
+    pub pin_length_mm: f64,
+    /// What the output switches.
+    pub output: Output,
+    /// Nominal control voltage, V.
+    pub control_v: f64,
+    /// Voltage of the blocked output, V.
+    pub rated_v: f64,
+    /// Current of the conducting output, A.
+    pub rated_a: f64,
+    /// True when the output conducts when reversed.
+    #[serde(default)]
+    pub body_diode: bool,
+}
+
+/// What is measured of the turn-on and turn-off voltages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Whether the output obeys at both limits.
+    Conformity,
+    /// The same, then both voltages by halved steps.
+    Bisect,
+}
+
+/// How the part is measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestPlan {
+    /// What is measured of the turn-on and turn-off voltages.
+    pub method: Method,
+    /// Number of halved steps of a search.
+    pub steps: u32,
+    /// Longest time constant of the output, ms.
+    pub time_constant_ms: f64,
+    /// Voltage at the reversed control input, V.
+    pub reverse_v: f64,
+}
+
+impl KindRecipe for SsrRecipe {
+    fn kind(&self) -> Kind {
+        Kind::Ssr
+    }
+
+    fn part(&self) -> PartFacts {
+        PartFacts {
+            body_mm: self.part.body_mm,
+            pin_length_mm: self.part.pin_length_mm,
+            reference: UNCONVERTED,
+            nominal_v: None,
+        }
+    }
+
+    fn on_rig(
+        &self,
+        recipe: Arc<Recipe>,
+        rig: &Rig,
+        _stored: Option<Calibration>,
+    ) -> Result<Device, MissingPoint> {
+        let device = super::Device::new(recipe, self, rig)?;
+        Ok(Device::Ssr(Box::new(device)))
+    }
+
+    fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
+        feasible::infeasible(self, limits, rig)
+    }
+
+    fn card(&self) -> Card {
+        card::card(self)
+    }
+
+    fn made_up(&self, limits: &Limits) -> MadeUp {
+        made_up::made_up(self, limits)
+    }
+}
