@@ -143,7 +143,7 @@ impl Command {
     fn own_config(&self) -> Option<Folder> {
         match self {
             #[cfg(feature = "sim")]
-            Self::Demo(_) => Some(Folder::built_in()),
+            Self::Demo(args) => Folder::built_in_rig(&args.rig),
             #[cfg(feature = "sim")]
             Self::Sim(args) if args.faults && !installed::has("sim.toml") => {
                 Some(Folder::built_in())

@@ -15,10 +15,17 @@ use config::Folder;
   relayrig demo --speed 5
   relayrig demo --pace real
   relayrig demo --config rig1
+  relayrig demo --rig ssr
 
 The configuration is inside the program; a directory `config` is used only with --config config. The history
 relayrig-demo.db and the logins relayrig-demo-access.db appear in the current directory; --db names another place.")]
 pub struct DemoArgs {
+    /// Rig to simulate, of those inside the program
+    #[arg(long, value_name = "NAME", default_value = "jzc-22f", value_parser = rig::built_in(), conflicts_with = "config")]
+    pub rig: String,
+    /// Recipe of the lot [default: jzc-22f-012 where the rig has it, else its first one]
+    #[arg(long, value_name = "NAME")]
+    pub recipe: Option<String>,
     /// Where the page listens.
     #[command(flatten)]
     pub page: PageArgs,
@@ -64,15 +71,28 @@ pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
     };
     let first = LotOrder {
         lot: format!("demo {}", jiff::Zoned::now().strftime("%Y-%m-%d %H:%M:%S")),
-        recipe: "jzc-22f-012".into(),
+        recipe: args
+            .recipe
+            .clone()
+            .unwrap_or_else(|| first_recipe(&files.config)),
         count: args.count,
         retest: None,
     };
     if let Folder::Memory(_) = &files.config {
         eprintln!(
-            "relayrig: demo with the configuration inside this program; `relayrig init DIR` writes it for you to edit"
+            "relayrig: demo with the configuration inside this program; `relayrig init DIR --rig {}` writes it for you to edit",
+            args.rig
         );
     }
     let page = args.page.clone();
     serve::run(files, &ServeArgs { page, rig }, Some(first))
+}
+
+/// Returns the recipe of a demo for which no other is named.
+fn first_recipe(config: &Folder) -> String {
+    const USUAL: &str = "jzc-22f-012";
+    let names = config::recipe_names(config);
+    let usual = names.iter().any(|it| it == USUAL);
+    let first = names.into_iter().next().filter(|_| !usual);
+    first.unwrap_or_else(|| USUAL.to_owned())
 }

@@ -4,6 +4,8 @@ use anyhow::{Context, bail};
 use app::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
 use app::source::{Simulated, SimulatedPace};
+use clap::builder::PossibleValuesParser;
+use config::Folder;
 use std::path::PathBuf;
 
 /// Clock of the simulated rig.
@@ -39,6 +41,11 @@ pub struct RigArgs {
     /// Port of a line instead of the one in rig.toml
     #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
     pub line: Vec<String>,
+}
+
+/// Returns the parser of `--rig`, which takes the names of the rigs inside this program.
+pub fn built_in() -> PossibleValuesParser {
+    PossibleValuesParser::new(Folder::built_in_rigs())
 }
 
 impl RigArgs {

@@ -51,3 +51,15 @@ pub(super) const RIGS: &[Rig] = &[rig!["ssr":
     "scene.toml",
     "sim.toml",
 ]];
+
+/// Name of the rig of `config/` itself.
+pub(super) const FIRST_RIG: &str = "jzc-22f";
+
+/// Returns name and text of every file of a rig; `None` for a name that no rig has.
+pub(super) fn files_of(rig: &str) -> Option<&'static [(&'static str, &'static str)]> {
+    if rig == FIRST_RIG {
+        return Some(BUILT_IN);
+    }
+    let found = RIGS.iter().find(|(name, _)| *name == rig);
+    found.map(|(_, files)| *files)
+}

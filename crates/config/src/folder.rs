@@ -3,11 +3,12 @@
 //! Everything that reads or revises a configuration does it through [`Folder`]. A file has the name that it has in
 //! `config/`, such as `recipes/jzc-22f-012.toml`.
 
-use super::built_in::{BUILT_IN, RIGS};
+use super::built_in::{BUILT_IN, FIRST_RIG, RIGS, files_of};
 use super::check::File;
 use super::error::ConfigError;
 use std::collections::BTreeMap;
 use std::io::{Error, ErrorKind, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -48,15 +49,15 @@ impl Folder {
         Self::in_memory(BUILT_IN)
     }
 
-    /// Returns the files of `config/rigs/NAME` that this program was built with; `None` for a name that no rig has.
+    /// Returns the files of a rig that this program was built with; `None` for a name that no rig has.
     pub fn built_in_rig(name: &str) -> Option<Self> {
-        let rig = RIGS.iter().find(|(known, _)| *known == name);
-        rig.map(|(_, files)| Self::in_memory(files))
+        files_of(name).map(Self::in_memory)
     }
 
-    /// Yields the names of the rigs that this program was built with, beside that of `config/` itself.
+    /// Yields the names of the rigs that this program was built with: first that of `config/`, then those of
+    /// `config/rigs/`.
     pub fn built_in_rigs() -> impl Iterator<Item = &'static str> {
-        RIGS.iter().map(|(name, _)| *name)
+        iter::once(FIRST_RIG).chain(RIGS.iter().map(|(name, _)| *name))
     }
 
     fn in_memory(files: &[(&str, &str)]) -> Self {

@@ -4,7 +4,7 @@
 //! configuration is left. The hidden directory lies beside a target that does not exist yet, but inside an empty
 //! target, which may be the working directory or the root of a file system.
 
-use super::built_in::BUILT_IN;
+use super::built_in::{BUILT_IN, files_of};
 use std::collections::BTreeSet;
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Write};
@@ -22,6 +22,12 @@ pub enum InitError {
         /// Path of the directory.
         dir: PathBuf,
     },
+    /// No rig of this program has the name.
+    #[error("found rig \"{found}\", expected one of {known}", known = super::Folder::built_in_rigs().collect::<Vec<_>>().join(", "))]
+    UnknownRig {
+        /// Name given.
+        found: String,
+    },
     /// The directory or a file could not be written.
     #[error("{}: the configuration could not be written", dir.display())]
     Unwritten {
@@ -32,18 +38,29 @@ pub enum InitError {
     },
 }
 
-/// Writes the files of `config/` to `dir`, which must be new or empty. Missing parents are created.
+/// Name and text of a file.
+type Named = (&'static str, &'static str);
+
+/// Writes the files of a built-in rig to `dir`, which must be new or empty, with the instrument profiles and the
+/// explanation of the keys. Missing parents are created.
 ///
 /// # Errors
-/// Fails when `dir` has entries, or when it cannot be written.
-pub fn init(dir: &Path) -> Result<(), InitError> {
+/// Fails when no rig has the name, when `dir` has entries, or when it cannot be written.
+pub fn init(dir: &Path, rig: &str) -> Result<(), InitError> {
+    let own = files_of(rig).ok_or_else(|| InitError::UnknownRig {
+        found: rig.to_owned(),
+    })?;
+    let shared = |(name, _): &&Named| *name == "README.md" || name.starts_with("instruments/");
+    let missing = |(name, _): &&Named| own.iter().all(|(known, _)| known != name);
+    let shared = BUILT_IN.iter().filter(shared).filter(missing);
+    let files: Vec<Named> = own.iter().chain(shared).copied().collect();
     let written = match fs::read_dir(dir).map(|mut entries| entries.next()) {
         Ok(Some(_)) => {
             let dir = dir.to_owned();
             return Err(InitError::NotEmpty { dir });
         }
-        Ok(None) => fill(dir),
-        Err(error) if error.kind() == ErrorKind::NotFound => create(dir),
+        Ok(None) => fill(dir, &files),
+        Err(error) if error.kind() == ErrorKind::NotFound => create(dir, &files),
         Err(error) => Err(error),
     };
     written.map_err(|source| InitError::Unwritten {
@@ -52,21 +69,21 @@ pub fn init(dir: &Path) -> Result<(), InitError> {
     })
 }
 
-fn create(dir: &Path) -> io::Result<()> {
+fn create(dir: &Path, files: &[Named]) -> io::Result<()> {
     let parent = match dir.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         Some(_) | None => Path::new("."),
     };
     fs::create_dir_all(parent)?;
-    let staged = stage(parent)?;
+    let staged = stage(parent, files)?;
     fs::rename(staged.path(), dir)?;
     File::open(parent)?.sync_all()
 }
 
-fn fill(dir: &Path) -> io::Result<()> {
-    let staged = stage(dir)?;
-    let first = |(name, _): &(&'static str, _)| name.split('/').next();
-    let entries: BTreeSet<&str> = BUILT_IN.iter().filter_map(first).collect();
+fn fill(dir: &Path, files: &[Named]) -> io::Result<()> {
+    let staged = stage(dir, files)?;
+    let first = |(name, _): &Named| name.split('/').next();
+    let entries: BTreeSet<&str> = files.iter().filter_map(first).collect();
     for entry in entries {
         fs::rename(staged.path().join(entry), dir.join(entry))?;
     }
@@ -74,12 +91,12 @@ fn fill(dir: &Path) -> io::Result<()> {
 }
 
 /// Writes every file to a hidden directory in `place`, which disappears when the returned value is dropped.
-fn stage(place: &Path) -> io::Result<TempDir> {
+fn stage(place: &Path, files: &[Named]) -> io::Result<TempDir> {
     let mut hidden = tempfile::Builder::new();
     // The permissions of any new directory; without this line only the owner could read it.
     hidden.permissions(Permissions::from_mode(0o777));
     let staged = hidden.prefix(".relayrig-init-").tempdir_in(place)?;
-    for (name, text) in BUILT_IN {
+    for (name, text) in files {
         let path = staged.path().join(name);
         fs::create_dir_all(path.parent().unwrap_or(place))?;
         let mut file = File::create(path)?;

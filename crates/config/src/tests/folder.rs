@@ -52,8 +52,12 @@ fn every_rig_of_the_repository_is_compiled_in() {
     let entries = fs::read_dir(config().join("rigs")).unwrap();
     let names = entries.map(|it| it.unwrap().file_name().into_string().unwrap());
     let names: BTreeSet<String> = names.collect();
-    let known: BTreeSet<String> = Folder::built_in_rigs().map(str::to_owned).collect();
-    assert_eq!(known, names);
+    let known: Vec<&str> = Folder::built_in_rigs().collect();
+    assert_eq!(known[0], "jzc-22f", "the rig of the folder itself");
+    assert_eq!(
+        names,
+        known[1..].iter().map(|it| (*it).to_owned()).collect()
+    );
     for name in names {
         let Some(Folder::Memory(memory)) = Folder::built_in_rig(&name) else {
             unreachable!("files in memory")
@@ -140,7 +144,7 @@ fn init_writes_every_file_to_new_and_empty_directories() {
     let (new, empty) = (folder.path().join("plant/rig1"), folder.path().join("rig2"));
     fs::create_dir(&empty).unwrap();
     for dir in [&new, &empty] {
-        init(dir).unwrap();
+        init(dir, "jzc-22f").unwrap();
         assert_eq!(texts(dir), default_rig());
         check_all(&Folder::Directory(dir.clone())).unwrap();
     }
@@ -151,15 +155,31 @@ fn init_writes_every_file_to_new_and_empty_directories() {
 }
 
 #[test]
+fn init_adds_profiles_and_explanations_to_a_rig() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("rig");
+    init(&dir, "ssr").unwrap();
+    let (written, own) = (texts(&dir), texts(&config().join("rigs/ssr")));
+    for (name, text) in &own {
+        assert_eq!(written.get(name), Some(text), "{name}");
+    }
+    assert!(written.contains_key("instruments/smu-2450.toml") && written.contains_key("README.md"));
+    check_all(&Folder::Directory(dir)).unwrap();
+    let unknown = init(&folder.path().join("other"), "none").unwrap_err();
+    let expected = "found rig \"none\", expected one of jzc-22f, ssr";
+    assert_eq!(unknown.to_string(), expected);
+}
+
+#[test]
 fn init_leaves_a_directory_with_entries_as_it_is() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("rig.toml"), "mine").unwrap();
-    let refused = init(folder.path()).unwrap_err();
+    let refused = init(folder.path(), "jzc-22f").unwrap_err();
     assert!(matches!(refused, InitError::NotEmpty { .. }), "{refused}");
     let file = folder.path().join("rig.toml");
-    let refused = init(&file).unwrap_err();
+    let refused = init(&file, "jzc-22f").unwrap_err();
     assert!(matches!(refused, InitError::Unwritten { .. }), "{refused}");
-    let below = init(&file.join("rig1")).unwrap_err();
+    let below = init(&file.join("rig1"), "jzc-22f").unwrap_err();
     assert!(matches!(below, InitError::Unwritten { .. }), "{below}");
     assert_eq!(
         texts(folder.path()),

@@ -47,7 +47,7 @@ fn faults(dir: &Path, changed: &str) -> String {
 #[test]
 fn every_wrong_recipe_is_refused_with_key_and_reason() {
     let copy = tempfile::tempdir().unwrap();
-    init(copy.path()).unwrap();
+    init(copy.path(), "jzc-22f").unwrap();
     let table: String = TABLE
         .lines()
         .filter(|line| !line.starts_with('#') && !line.is_empty())
