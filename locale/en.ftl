@@ -637,7 +637,7 @@ characteristic-i_in_ma = Input current
 characteristic-i_rev_ua = Reverse input current
 characteristic-t_on_us = Turn-on time
 characteristic-t_off_us = Turn-off time
-characteristic-v_drop_v = Output drop at rated current
+characteristic-v_drop_v = On-state drop
 characteristic-r_on_mohm = On resistance
 characteristic-i_leak_ua = Leakage, cold
 characteristic-i_leak_hot_ua = Leakage, hot
@@ -1008,6 +1008,9 @@ bin-coil = coil
 bin-voltage = voltage
 bin-time = time
 bin-contact = contact
+bin-input = input
+bin-output = output
+bin-leakage = leakage
 
 ## States of the station
 

@@ -610,7 +610,7 @@ characteristic-i_in_ma = 输入电流
 characteristic-i_rev_ua = 反向输入电流
 characteristic-t_on_us = 接通时间
 characteristic-t_off_us = 关断时间
-characteristic-v_drop_v = 额定电流下输出压降
+characteristic-v_drop_v = 通态压降
 characteristic-r_on_mohm = 导通电阻
 characteristic-i_leak_ua = 漏电流（冷）
 characteristic-i_leak_hot_ua = 漏电流（热）
@@ -981,6 +981,9 @@ bin-coil = 线圈不良箱
 bin-voltage = 电压不良箱
 bin-time = 时间不良箱
 bin-contact = 触点不良箱
+bin-input = 输入不良箱
+bin-output = 输出不良箱
+bin-leakage = 漏电流不良箱
 
 ## States of the station
 

@@ -104,6 +104,7 @@ impl Cycle {
                 .map(|actuator| self.actuator(*actuator, now))
                 .collect(),
             places: places(station),
+            bins: wiring.axis.bins().map(|it| it.name().to_owned()).collect(),
             inputs: wiring
                 .digital_inputs()
                 .map(|(name, point)| (name.to_owned(), input(point)))

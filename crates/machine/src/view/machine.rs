@@ -20,6 +20,8 @@ pub struct Machine {
     pub actuators: Vec<ActuatorView>,
     /// Parts by place: `pocket`, `nest`, `gripper`, `falling`; empty places are absent.
     pub places: BTreeMap<String, Token>,
+    /// Names of the bins, in the order of the line.
+    pub bins: Vec<String>,
     /// Digital inputs by name; null when unread or stale.
     pub inputs: BTreeMap<String, Option<bool>>,
     /// Commanded digital outputs by name.

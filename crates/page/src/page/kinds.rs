@@ -1,7 +1,7 @@
-//! Data of the page (`GET /`), as JSON: texts of the pages, and every characteristic of a device with its unit and
-//! names.
+//! Data of the page (`GET /`), as JSON: texts of the pages, every characteristic of a device with its unit and names,
+//! and every bin that a kind of device names.
 
-use machine::dut::Characteristic;
+use machine::dut::{Bin, Characteristic, Kind};
 use serde_json::{Value, json};
 use texts::Lang;
 
@@ -38,10 +38,21 @@ const ELSEWHERE: [&str; 28] = [
     "wears",
 ];
 
-/// Returns `{"characteristics": [{"key", "unit", "en", "zh"}]}`.
+/// Returns `{"characteristics": [{"key", "unit", "en", "zh"}], "bins": [..]}`, the bins from `pass` to `retest`.
 pub(super) fn json() -> String {
     let characteristics: Vec<Value> = Characteristic::all().map(named).collect();
-    json!({ "characteristics": characteristics }).to_string()
+    json!({ "characteristics": characteristics, "bins": bins() }).to_string()
+}
+
+fn bins() -> Vec<&'static str> {
+    let mut bins = vec![Bin::PASS.name()];
+    let of_kinds = Kind::ALL.into_iter().flat_map(|it| it.definition().bins);
+    for bin in of_kinds.chain([&Bin::RETEST]) {
+        if !bins.contains(&bin.name()) {
+            bins.push(bin.name());
+        }
+    }
+    bins
 }
 
 /// Returns `{id: {"en", "zh"}}`.

@@ -122,7 +122,7 @@ fn every_text_of_the_pages_is_used() {
 }
 
 #[test]
-fn every_listed_bin_verdict_and_mode_has_a_name() {
+fn every_listed_verdict_motion_and_mode_has_a_name() {
     let table = table();
     let list = |name: &str| {
         let text = CODE.split(&format!("const {name} = [")).nth(1).unwrap();
@@ -134,7 +134,6 @@ fn every_listed_bin_verdict_and_mode_has_a_name() {
             .collect::<Vec<_>>()
     };
     for (name, family, count) in [
-        ("BINS", "bin", 6),
         ("VERDICTS", "verdict", 3),
         ("JOGS", "motion", 15),
         ("MODES", "mode", 3),
@@ -147,6 +146,20 @@ fn every_listed_bin_verdict_and_mode_has_a_name() {
                 .all(|it| table.contains_key(&format!("{family}-{it}"))),
             "{name}"
         );
+    }
+}
+
+#[test]
+fn every_bin_of_a_kind_has_a_name() {
+    let (table, kinds) = (table(), kinds::json());
+    let kinds: serde_json::Value = serde_json::from_str(&kinds).unwrap();
+    let bins = kinds["bins"].as_array().unwrap();
+    for (bin, place) in [("pass", 0), ("retest", bins.len() - 1)] {
+        assert_eq!(bins[place], bin);
+    }
+    for bin in bins {
+        let id = format!("bin-{}", bin.as_str().unwrap());
+        assert!(table.contains_key(&id), "{id}");
     }
 }
 

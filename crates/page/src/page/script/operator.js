@@ -76,8 +76,9 @@ function showRecent(recent) {
 const ordered = (names, counts) => [...names, ...Object.keys(counts).filter((it) => !names.includes(it))];
 
 function showBins(bins) {
+  const there = view.machine ? BINS.filter((it) => view.machine.bins.includes(it)) : [];
   const most = Math.max(1, ...Object.values(bins));
-  at("bins").replaceChildren(...ordered(BINS, bins).map((name) => {
+  at("bins").replaceChildren(...ordered(there, bins).map((name) => {
     const item = make("li"), bar = make("div", undefined, "bar"), fill = make("i");
     fill.style.width = 100 * (bins[name] || 0) / most + "%";
     bar.append(fill);

@@ -1,10 +1,9 @@
 "use strict";
 // Functions that all pages share. Texts enter the page through textContent only, so that no value can become markup.
 const WORDS = JSON.parse(document.getElementById("words").textContent);
-// Characteristics of every kind of device, with unit and names.
-const {characteristics: CHARACTERISTICS} = JSON.parse(document.getElementById("kinds").textContent);
-const UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C"};
-const BINS = ["pass", "coil", "contact", "voltage", "time", "retest"];
+// Characteristics of every kind of device, with unit and names; the bins that some kind of device names.
+const {characteristics: CHARACTERISTICS, bins: BINS} = JSON.parse(document.getElementById("kinds").textContent);
+const UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C", uA: "µA", us: "µs"};
 const VERDICTS = ["pass", "fail", "void"];
 const NONE = "–";
 
