@@ -163,6 +163,8 @@ pub struct RigFile {
     pub analog_in: BTreeMap<String, Terminal>,
     /// Analog outputs by point name.
     pub analog_out: BTreeMap<String, Terminal>,
+    /// Instruments by name, each with its `link`.
+    pub instruments: BTreeMap<String, Table>,
     /// Ranges of the coil supply; empty for a rig with only one.
     pub supply_ranges: Vec<SupplyRange>,
     /// Digital inputs by point name.
@@ -200,12 +202,13 @@ pub fn read_rig(files: &Files) -> Result<RigFile, ConfigError> {
         code_reader,
         modules: named(&rig, "module", module)?,
         host_watchdog_ms: rig.get::<Table>("bus")?.get("host_watchdog_ms")?,
+        instruments: rig.get_or("instrument", BTreeMap::new())?,
         analog_in: rig.get("analog_in")?,
-        analog_out: rig.get("analog_out")?,
+        analog_out: rig.get_or("analog_out", BTreeMap::new())?,
         supply_ranges: ranges.into_values().collect(),
         digital_in: rig.get("digital_in")?,
         digital_out: rig.get("digital_out")?,
-        counter: rig.get("counter")?,
+        counter: rig.get_or("counter", BTreeMap::new())?,
         temperature: rig.get("temperature")?,
         axis: named(&rig, "axis", |name, stop| {
             Ok((name, (stop.get("point")?, stop.get("x_mm")?)))

@@ -10,6 +10,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use serde::Serialize;
 
 use crate::rig::WorldModel;
+use crate::scpi::circuit::Circuit;
 use crate::terminal::Plant;
 use crate::truth::{Overdrive, WorldRecord};
 
@@ -208,6 +209,10 @@ impl Plant for JournaledWorld {
 
     fn gate_open_us(&mut self, module: &str, channel: u8) -> f64 {
         self.scene.gate_open_us(module, channel)
+    }
+
+    fn circuit(&mut self) -> Option<&mut dyn Circuit> {
+        self.scene.circuit()
     }
 
     fn reference_clock_hz(&self) -> f64 {

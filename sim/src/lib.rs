@@ -31,6 +31,7 @@ mod error;
 pub mod fault;
 mod files;
 pub mod fingerprint;
+mod instruments;
 pub mod journal;
 pub mod line;
 pub mod module;

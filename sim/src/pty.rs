@@ -18,7 +18,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
 
 use crate::line;
 use crate::{SharedRig, SimError};
@@ -54,9 +53,7 @@ struct Port {
 /// # Errors
 /// Fails when the system refuses a pseudo-terminal or a thread.
 pub fn serve(rig: &SharedRig, rates: Rates) -> Result<Ptys, SimError> {
-    let origin = Instant::now()
-        .checked_sub(Duration::from_micros(rig.now_us()))
-        .unwrap_or_else(Instant::now);
+    let origin = rig.start_real_time();
     let mut ptys = Ptys {
         ports: Vec::new(),
         stop: Arc::new(AtomicBool::new(false)),

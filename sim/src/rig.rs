@@ -5,9 +5,10 @@
 //! of modules in the configuration. The world advances to each of these instants. Rig time never runs backwards:
 //! a request with a time before the last event counts as arriving at that event. A module serves one request at a
 //! time: its replies keep their order, and a late reply delays the next one. Meanwhile the module keeps one
-//! request and misses all others.
+//! request and misses all others. Instruments act in the same order of events, at one instant after the modules.
 
 use std::sync::mpsc::Receiver;
+use std::time::{Duration, Instant};
 
 use crate::config::{LineSpec, READER};
 use crate::dcon;
@@ -16,6 +17,7 @@ use crate::fault::{Event, LineFaults};
 use crate::journal::{Entry, JournaledWorld, LateReplies};
 use crate::line::wire_us;
 use crate::module::Module;
+use crate::scpi::bench::Instruments;
 use crate::shared;
 use crate::terminal::Plant;
 use crate::truth::WorldRecord;
@@ -45,6 +47,9 @@ pub struct Rig {
     serving_us: Vec<(u64, u64)>,
     lines: Vec<LineSpec>,
     faults: LineFaults,
+    instruments: Option<Instruments>,
+    /// Instant of the wall clock at rig time 0, once the rig runs in real time.
+    origin: Option<Instant>,
     now_us: u64,
 }
 
@@ -63,6 +68,8 @@ impl Rig {
             modules,
             lines,
             faults,
+            instruments: None,
+            origin: None,
             now_us: 0,
         };
         rig.scene.advance(0);
@@ -75,6 +82,33 @@ impl Rig {
             rig.due_us[place] = module.next_us();
         }
         rig
+    }
+
+    /// Puts instruments around the circuit of the world.
+    pub fn with_instruments(self, instruments: Option<Instruments>) -> Self {
+        Self {
+            instruments,
+            ..self
+        }
+    }
+
+    /// Returns the instruments; `None` for a rig without them.
+    pub(crate) fn instruments_mut(&mut self) -> Option<&mut Instruments> {
+        self.instruments.as_mut()
+    }
+
+    /// Starts to follow the wall clock: rig time is its present value now. Returns the instant of rig time 0.
+    pub(crate) fn start_real_time(&mut self) -> Instant {
+        let passed = Duration::from_micros(self.now_us);
+        let origin = Instant::now().checked_sub(passed);
+        let origin = origin.unwrap_or_else(Instant::now);
+        self.origin = Some(origin);
+        origin
+    }
+
+    /// Returns the instant of the wall clock at rig time 0.
+    pub(crate) fn real_origin(&mut self) -> Instant {
+        self.origin.unwrap_or_else(|| self.start_real_time())
     }
 
     /// Returns the lines in the order of the configuration.
@@ -248,6 +282,11 @@ impl Rig {
             };
             return shared::check_targets(self.faults.targets(), shared::RIG_TARGETS, known);
         }
+        if let Some(instruments) = &mut self.instruments
+            && instruments.faults.add_from(self.now_us, name, value)?
+        {
+            return instruments.check_targets();
+        }
         let number = value.map(|text| shared::number(name, text)).transpose()?;
         self.record().inject(name, number)
     }
@@ -262,6 +301,7 @@ impl Rig {
         while let Some((place, due_us)) = self.earliest()
             && due_us <= t_us
         {
+            self.run_instruments(due_us);
             let due_us = due_us.max(self.now_us);
             self.now_us = due_us;
             self.scene.advance(due_us);
@@ -272,6 +312,22 @@ impl Rig {
                 self.scene.record_expiry(module.id());
             }
             self.due_us[place] = module.next_us();
+        }
+        self.run_instruments(t_us.saturating_add(1));
+    }
+
+    /// Lets the instruments act at each of their instants before `end_us`.
+    fn run_instruments(&mut self, end_us: u64) {
+        let Some(instruments) = &mut self.instruments else {
+            return;
+        };
+        while let Some((at_us, number)) = instruments.next().filter(|(at_us, _)| *at_us < end_us) {
+            self.now_us = self.now_us.max(at_us);
+            self.scene.advance(self.now_us);
+            let Some(circuit) = self.scene.circuit() else {
+                return;
+            };
+            instruments.act(number, self.now_us, circuit);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use crate::bench;
 use crate::config::{ConfigError, Files, LineSpec, RigFile, WorldTable, read_rig, read_world};
@@ -11,6 +12,7 @@ use crate::module::Module;
 use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::rig::{Reply, Rig};
+use crate::scpi::of_rig;
 use crate::terminal::ModuleSpec;
 use crate::truth::{BodyTruth, Overdrive};
 use crate::world::{World, WorldOptions};
@@ -66,12 +68,18 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
     let file = read_rig(&options.files)?;
     let table = read_world(&options.files, options.world.as_deref())?;
     let mut faults = LineFaults::none(options.seed);
+    let (seed, files) = (options.seed, &options.files);
+    let mut instruments = of_rig::build(&file.instruments, &table.instrument, files, seed)?;
     let mut world_faults = Vec::new();
     for text in &options.faults {
         let (name, value) = split(text);
-        if !faults.add(name, value)? {
+        let of_instruments = instruments.as_mut().map(|it| it.faults.add(name, value));
+        if !faults.add(name, value)? && !of_instruments.transpose()?.unwrap_or(false) {
             world_faults.push(world_fault(&table, name, value)?);
         }
+    }
+    if let Some(instruments) = &instruments {
+        instruments.check_targets()?;
     }
     check_targets(faults.targets(), RIG_TARGETS, |target| {
         file.modules.iter().any(|module| module.id == target)
@@ -80,6 +88,7 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
     let world = World::build(&options.of_world(world_faults))?;
     let modules = modules(&file, &table, options.seed, world.noise_seed())?;
     let rig = Rig::new(Box::new(world), modules, file.lines, faults);
+    let rig = rig.with_instruments(instruments);
     Ok(SharedRig::new(rig))
 }
 
@@ -229,6 +238,16 @@ impl SharedRig {
         self.rig().now_us()
     }
 
+    /// Starts to follow the wall clock; see [`Rig::start_real_time`].
+    pub(crate) fn start_real_time(&self) -> Instant {
+        self.rig().start_real_time()
+    }
+
+    /// Returns the instant of the wall clock at rig time 0.
+    pub(crate) fn real_origin(&self) -> Instant {
+        self.rig().real_origin()
+    }
+
     /// Returns name and baud rate of each line, in the order of their numbers.
     pub fn lines(&self) -> Vec<(String, u32)> {
         let name = |line: &LineSpec| (line.name.clone(), line.baud);
@@ -319,7 +338,7 @@ impl SharedRig {
     }
 
     /// Locks the rig. A poisoned lock is safe: a line that panics leaves the rig between two events.
-    fn rig(&self) -> MutexGuard<'_, Rig> {
+    pub(crate) fn rig(&self) -> MutexGuard<'_, Rig> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -4,6 +4,7 @@
 //! volts, logic levels and gate times, at integer microseconds of rig time that never run backwards. A module
 //! reads and writes only after [`Plant::advance`] has brought the world to that instant.
 
+use crate::scpi::circuit::Circuit;
 use crate::table::Table;
 
 /// One module as `config/rig.toml` describes it (identifier, line, address and commissioning).
@@ -44,6 +45,11 @@ pub trait Plant {
 
     /// Returns the total open time of a counter's gate so far, microseconds, gate delay included.
     fn gate_open_us(&mut self, module: &str, channel: u8) -> f64;
+
+    /// Returns the circuit to which instruments connect; `None` where there is none.
+    fn circuit(&mut self) -> Option<&mut dyn Circuit> {
+        None
+    }
 
     /// Returns the true frequency of the reference clock at both counter inputs, hertz.
     fn reference_clock_hz(&self) -> f64;

@@ -6,6 +6,7 @@ use std::fmt;
 use crate::error::SimError;
 use crate::world::WorldOptions;
 use crate::world::relay::Levels;
+use crate::world::ssr::SsrTruth;
 
 /// Facts of the world that no module reports, and control of its faults. A world of fixed signals has neither parts nor
 /// faults.
@@ -88,6 +89,9 @@ pub struct PartTruth {
     /// Resistance of a resistor dummy at the reference temperature, ohm; `None` for an open one. Relays omit this key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resistance_ohm: Option<f64>,
+    /// Figures of a solid-state relay. Other kinds omit these keys.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub ssr: Option<SsrTruth>,
     /// Number of full-voltage operations of a relay, from rest to the first make of NO. Dummies omit this key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub operations: Option<u64>,

@@ -35,9 +35,9 @@ pub struct SimArgs {
     /// World instead of config/sim.toml
     #[arg(long, value_name = "FILE")]
     pub world: Option<PathBuf>,
-    /// Recipe whose parts are in the magazine
-    #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
-    pub recipe: String,
+    /// Recipe whose parts are in the magazine; without it jzc-22f-012, or the first recipe of a rig that has no such part
+    #[arg(long, value_name = "NAME")]
+    pub recipe: Option<String>,
     /// Fault by name
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
@@ -91,10 +91,10 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
     let rig = match &args.bench {
         Some(file) => rigsim::build_bench(file, &args.fault)?,
         None => rigsim::build(&Options {
-            files,
             world: args.world.clone(),
             seed: args.seed,
-            recipe: args.recipe.clone(),
+            recipe: args.recipe.clone().unwrap_or_else(|| usual_recipe(&files)),
+            files,
             parts: None,
             reference_parts: true,
             faults: args.fault.clone(),
@@ -114,20 +114,41 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
         .into_iter()
         .map(|(name, path)| (name, json!(path.to_string_lossy())))
         .collect();
-    println!("{}", json!({ "lines": lines }));
-    if args.journal {
-        print_journal(rig.journal());
-    }
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
     let mut truth = args.truth.as_deref().map(TruthFile::create).transpose()?;
-    wait(|| match &mut truth {
-        Some(file) => file.write_landed(&rig),
-        None => Ok(()),
+    runtime.block_on(async {
+        let links = rig.serve_instruments().await?;
+        let links: BTreeMap<String, String> = links.into_iter().collect();
+        match links.is_empty() {
+            true => println!("{}", json!({ "lines": lines })),
+            false => println!("{}", json!({ "lines": lines, "instruments": links })),
+        }
+        if args.journal {
+            print_journal(rig.journal());
+        }
+        wait(|| match &mut truth {
+            Some(file) => file.write_landed(&rig),
+            None => Ok(()),
+        })
+        .await
     })?;
     ptys.stop();
     if let Some(file) = &mut truth {
         file.write_rest(&rig)?;
     }
     Ok(Exit::Done)
+}
+
+/// Returns the recipe of the default relay, or the first one of a rig without it.
+fn usual_recipe(files: &rigsim::Files) -> String {
+    let usual = "jzc-22f-012".to_owned();
+    let recipes = files.recipes();
+    match recipes.iter().any(|name| *name == usual) {
+        true => usual,
+        false => recipes.into_iter().next().unwrap_or(usual),
+    }
 }
 
 /// Serves the instruments of a file until the command is interrupted.
@@ -160,18 +181,13 @@ fn print_journal(journal: std::sync::mpsc::Receiver<rigsim::journal::Entry>) {
 }
 
 /// Waits for Ctrl-C or a termination signal and calls `meanwhile` twice a second.
-fn wait(mut meanwhile: impl FnMut() -> anyhow::Result<()>) -> anyhow::Result<()> {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()?;
-    runtime.block_on(async {
-        let mut interrupts = Interrupts::listen()?;
-        let mut beat = tokio::time::interval(Duration::from_millis(500));
-        loop {
-            tokio::select! {
-                () = interrupts.next() => return Ok(()),
-                _ = beat.tick() => meanwhile()?,
-            }
+async fn wait(mut meanwhile: impl FnMut() -> anyhow::Result<()>) -> anyhow::Result<()> {
+    let mut interrupts = Interrupts::listen()?;
+    let mut beat = tokio::time::interval(Duration::from_millis(500));
+    loop {
+        tokio::select! {
+            () = interrupts.next() => return Ok(()),
+            _ = beat.tick() => meanwhile()?,
         }
-    })
+    }
 }

@@ -3,36 +3,13 @@
 use scpi::Failure;
 use texts::Message;
 
-/// Returns the message of a failure: family `instrument`, and its code.
+/// Returns the message of a failure: family `instrument`, and its code. The argument `detail` repeats `said` for programs
+/// that read JSON.
 pub fn message(failure: &Failure) -> Message {
-    let message = Message::new("instrument", failure.code());
-    match failure {
-        Failure::Timeout { command, limit } => message
-            .with("command", command)
-            .with("limit_ms", limit.0 / 1000),
-        Failure::Disconnected { reason } => message.with("detail", reason),
-        Failure::Malformed { command, reason } => {
-            message.with("command", command).with("detail", reason)
-        }
-        Failure::Instrument { code, text } => message.with("number", code).with("detail", text),
-        Failure::OverRange { command }
-        | Failure::NotANumber { command }
-        | Failure::OutOfStep { command } => message.with("command", command),
-        Failure::Local { text } => message.with("detail", text),
-        Failure::Identity { found, expected } | Failure::AdapterAddress { found, expected } => {
-            message.with("found", found).with("expected", expected)
-        }
-        Failure::ReadBack {
-            command,
-            found,
-            expected,
-        } => message
-            .with("command", command)
-            .with("found", found)
-            .with("expected", expected),
-        Failure::Overdue { limit } => message.with("limit_ms", limit.0 / 1000),
-        Failure::Down { attempts, last } => message.with("attempts", attempts).with("detail", last),
-        Failure::QueueOverflow | Failure::PowerCycled | Failure::NeverSilent => message,
+    let message = bus::instrument::message(failure);
+    match message.args().get("said").map(str::to_owned) {
+        Some(said) => message.with("detail", said),
+        None => message,
     }
 }
 

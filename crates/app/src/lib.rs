@@ -31,6 +31,7 @@ pub mod generate;
 pub mod host_check;
 pub mod import;
 pub mod instrument;
+mod instrument_tasks;
 pub mod links;
 pub mod lot;
 pub mod lot_decision;

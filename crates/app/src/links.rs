@@ -1,17 +1,23 @@
 //! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
 
+use super::instrument_tasks::InstrumentTasks;
 use super::lot::{LotContext, Purpose};
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
 use super::{simulated, source::Simulated, truth_file::TruthFile};
 use anyhow::anyhow;
+#[cfg(feature = "sim")]
+use bus::instrument::Opener;
 use bus::{LineLog, LineSettings, OpenPort, Pace, Reading};
 use config::{Plant, SerialReaderSettings};
-use cycle::LineEnds;
+use cycle::{InstrumentEnds, LineEnds};
 use machine::handling::serial::SourceName;
+#[cfg(feature = "sim")]
+use machine::rig::instruments::InstrumentWiring;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
 use rigsim::{SharedRig, pty, wire};
+use scpi::LinkAddress;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
@@ -41,6 +47,8 @@ pub struct Lines {
     handle: Handle,
     /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
+    /// Queue ends of the instruments that the cycle holds, in the order of the wiring.
+    pub instruments: Vec<InstrumentEnds>,
     /// Readings of the code reader; `None` in a lot without one.
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Trace and health of each line, with its name.
@@ -57,6 +65,7 @@ impl Lines {
         Self {
             handle: handle.clone(),
             ends: Vec::new(),
+            instruments: Vec::new(),
             readings: None,
             logs: Vec::new(),
             #[cfg(feature = "sim")]
@@ -162,7 +171,7 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
 ///
 /// # Errors
 /// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built.
-pub fn open(context: &LotContext, pace: &Pace, handle: &Handle) -> anyhow::Result<Lines> {
+pub async fn open(context: &LotContext<'_>, pace: &Pace, handle: &Handle) -> anyhow::Result<Lines> {
     let lines = Lines::none(handle);
     match context.source {
         RigSource::Serial(given) => serial(lines, context, given, pace),
@@ -172,7 +181,7 @@ pub fn open(context: &LotContext, pace: &Pace, handle: &Handle) -> anyhow::Resul
                 Some(live) => live.rig.clone(),
                 None => simulated::build(context.plant, source, context.order)?,
             };
-            simulated_lines(lines, context, (source, rig), pace)
+            simulated_lines(lines, context, (source, rig), pace).await
         }
     }
 }
@@ -197,17 +206,50 @@ fn serial(
         let port = port(READER, &reader.port);
         lines.open_reader(reader, bus::serial_port(port, reader.baud), pace);
     }
+    let tasks = instrument_tasks(&lines.handle, plant, pace, started_us());
+    lines.instruments = tasks.open_all(|name| {
+        let other = given.iter().find(|it| it.line == name)?;
+        other.port.parse().ok()
+    });
     Ok(lines)
 }
 
-/// Checks that the wiring has every line that `--line` names.
+fn instrument_tasks<'a>(
+    handle: &'a Handle,
+    plant: &'a Plant,
+    pace: &'a Pace,
+    seed: u64,
+) -> InstrumentTasks<'a> {
+    let wiring = &plant.wiring;
+    InstrumentTasks {
+        handle,
+        wiring,
+        pace,
+        seed,
+    }
+}
+
+/// Returns the present time, which no other run has as its seed.
+fn started_us() -> u64 {
+    jiff::Timestamp::now().as_microsecond().unsigned_abs()
+}
+
+/// Checks that the wiring has every line or instrument that `--line` names, and that the link of an instrument can be
+/// read.
 ///
 /// # Errors
-/// Fails on the first named line that the wiring lacks.
+/// Fails on the first name that the wiring lacks, and on a link that cannot be read.
 pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
     let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
     let reader = plant.serial_reader.as_ref().map(|_| READER);
-    let known: Vec<&str> = wired.chain(reader).collect();
+    let instruments = plant.wiring.instruments.iter().map(|it| it.name.as_str());
+    let known: Vec<&str> = wired.chain(reader).chain(instruments).collect();
+    for LinePort { line, port } in given {
+        let is_instrument = plant.wiring.instrument_named(line).is_some();
+        if is_instrument && let Err(error) = port.parse::<LinkAddress>() {
+            return Err(anyhow!("--line {line}: {error}"));
+        }
+    }
     match given.iter().find(|it| !known.contains(&it.line.as_str())) {
         Some(LinePort { line, .. }) => Err(anyhow!(
             "--line: found \"{line}\", expected one of {}",
@@ -218,9 +260,9 @@ pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
 }
 
 #[cfg(feature = "sim")]
-fn simulated_lines(
+async fn simulated_lines(
     mut lines: Lines,
-    context: &LotContext,
+    context: &LotContext<'_>,
     (source, rig): (&Simulated, SharedRig),
     pace: &Pace,
 ) -> anyhow::Result<Lines> {
@@ -230,7 +272,7 @@ fn simulated_lines(
         let line = plant.wiring.line_named(name);
         line.ok_or_else(|| anyhow!("line {name} is not wired"))
     };
-    if source.pace == super::source::SimulatedPace::Real {
+    if source.is_real() {
         let ptys = pty::serve(&rig, pty::Rates::Ignored)?;
         for (name, path) in ptys.paths() {
             let path = path.to_string_lossy();
@@ -244,7 +286,15 @@ fn simulated_lines(
             }
         }
         lines._ptys = Some(ptys);
+        let links = rig.serve_instruments().await?;
+        let tasks = instrument_tasks(&lines.handle, plant, pace, started_us());
+        lines.instruments = tasks.open_all(|name| {
+            let (_, link) = links.iter().find(|it| it.0 == name)?;
+            link.parse().ok()
+        });
     } else {
+        let tasks = instrument_tasks(&lines.handle, plant, pace, source.seed);
+        lines.instruments = plugged(&tasks, &rig)?;
         for (name, plug) in wire::plugs(&rig) {
             let mut open = bus::from_streams(move || plug.open());
             match (name == READER, reader) {
@@ -257,4 +307,22 @@ fn simulated_lines(
     }
     lines.rig = Some(rig);
     Ok(lines)
+}
+
+/// Starts the task of each instrument of a simulated rig in virtual time.
+#[cfg(feature = "sim")]
+fn plugged(tasks: &InstrumentTasks, rig: &SharedRig) -> anyhow::Result<Vec<InstrumentEnds>> {
+    let plugs = rig.instrument_plugs();
+    let open = |instrument| {
+        let InstrumentWiring { name, link, .. } = tasks.wiring.instrument(instrument);
+        let place = link.place();
+        let here = |it: &&(String, _)| it.0 == *name || (link.gpib.is_some() && it.0 == place);
+        let (_, plug) = plugs.iter().find(here).ok_or_else(|| {
+            anyhow!("instrument {name}: found none on the simulated rig, expected one at {link}")
+        })?;
+        let plug = plug.clone();
+        let opener = Opener::Streams(bus::from_streams(move || plug.open()));
+        Ok(tasks.open(instrument, link, opener))
+    };
+    tasks.wiring.instrument_ids().map(open).collect()
 }

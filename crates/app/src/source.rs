@@ -68,6 +68,11 @@ impl Simulated {
         }
     }
 
+    /// Returns true at the pace of the wall clock.
+    pub(super) fn is_real(&self) -> bool {
+        self.pace == SimulatedPace::Real
+    }
+
     /// Returns the source of a run on `live`, which the run neither builds nor drops.
     pub fn on(self, live: LiveRig) -> RigSource {
         RigSource::Simulated(Self {

@@ -48,4 +48,5 @@ pub(super) const RIGS: &[Rig] = &[rig!["ssr":
     "recipes/ssr-dc-60v-3a.toml",
     "rig.toml",
     "scene.toml",
+    "sim.toml",
 ]];

@@ -13,18 +13,21 @@ mod answers;
 mod commission;
 mod event;
 mod failures;
+mod instruments;
 mod jog_preview;
 mod lateness;
 mod open_job;
 mod orders;
 mod profile;
 mod publish;
+mod queries;
 mod record;
 mod scan_schedule;
 mod snapshot;
 mod standstill;
 mod traffic;
 
+pub use instruments::InstrumentEnds;
 pub use lateness::Lateness;
 pub use snapshot::{Snapshot, snapshots};
 pub use traffic::LineEnds;
@@ -32,6 +35,7 @@ pub use traffic::LineEnds;
 use bus::{Pace, Reading, Timer};
 pub use event::Event;
 use failures::Failures;
+use instruments::Instruments;
 use machine::guard::Guard;
 use machine::handling::NestId;
 use machine::handling::inside::Inside;
@@ -116,6 +120,7 @@ pub struct Cycle {
     image: Image,
     outputs: Outputs,
     traffic: Traffic,
+    instruments: Instruments,
     failures: Failures,
     links: CycleLinks,
     job_done: Option<JobDone>,
@@ -152,13 +157,13 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Takes over the lines; writes nothing before [`Cycle::run`].
+    /// Takes over the lines and the instruments; writes nothing before [`Cycle::run`].
     pub fn new(
         wiring: Arc<Wiring>,
         pace: Pace,
         station: Station,
         guard: Guard,
-        lines: Vec<LineEnds>,
+        (lines, instruments): (Vec<LineEnds>, Vec<InstrumentEnds>),
         links: CycleLinks,
     ) -> Self {
         assert_eq!(lines.len(), wiring.lines.len(), "a line without its task");
@@ -166,6 +171,7 @@ impl Cycle {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
             traffic: Traffic::new(&wiring, lines),
+            instruments: Instruments::new(&wiring, instruments),
             failures: Failures::new(&wiring),
             wiring,
             timer: Timer::new(pace),
@@ -252,6 +258,9 @@ impl Cycle {
         self.turned_at = now;
         while let Some((line, purpose, answer)) = self.traffic.next_answer() {
             self.take(line, purpose, answer);
+        }
+        while let Some((instrument, purpose, answer)) = self.instruments.next_answer() {
+            self.take_program(instrument, purpose, answer);
         }
         for module in self.image.take_resets() {
             let module = self.wiring.module(module);
@@ -352,6 +361,7 @@ impl Cycle {
             for module in self.traffic.drop_all() {
                 self.outputs.confirmed(module);
             }
+            self.instruments.make_safe(now);
         }
         for (point, on) in output.rig.outputs.drain(..) {
             self.set_output(point, on);
@@ -382,6 +392,7 @@ impl Cycle {
             self.job_done = Some(done);
         }
         self.traffic.dispatch(now);
+        self.instruments.dispatch(now, self.outputs.all_settled());
     }
 
     fn set_output(&mut self, point: impl Into<DigitalOutput>, on: bool) {
@@ -414,7 +425,10 @@ impl Cycle {
             }
             Job::Read(points) => self.wiring.reads(&points),
             Job::Restarts => self.traffic.measuring_resets(),
-            Job::Query(_) => Vec::new(),
+            Job::Query(queries) => {
+                self.start_queries(&queries);
+                Vec::new()
+            }
             Job::Mask(inputs) => self.wiring.masks(&inputs),
         };
         for (line, command) in commands {
@@ -434,10 +448,12 @@ impl Cycle {
         let until = wake_at
             .unwrap_or(now + IDLE)
             .min(self.traffic.next_due(now).unwrap_or(now + IDLE))
+            .min(self.instruments.next_due(now).unwrap_or(now + IDLE))
             .min(self.contact_unknown(now).unwrap_or(now + IDLE));
         tokio::select! {
             biased;
             () = self.traffic.answer() => {}
+            () = self.instruments.answer() => {}
             asked = self.links.orders.recv(), if !self.orders_closed => {
                 self.orders_closed = asked.is_none();
                 self.pending_orders.extend(asked);
@@ -456,3 +472,6 @@ async fn next_reading(readings: &mut Option<mpsc::Receiver<Reading>>) -> Option<
         None => std::future::pending().await,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,22 +1,30 @@
-//! Tracks the transactions of a measuring job, and the lost writes that it waits for.
+//! Tracks the transactions and queries of a measuring job, and the lost writes that it waits for.
 
 use machine::instrument::act::JobDone;
+use machine::instrument::query::Delivered;
 use machine::rig::wiring::ModuleId;
 use texts::Message;
 use units::RigTime;
 
-/// A measuring job under way; it ends when its last transaction ends.
+/// A measuring job under way; it ends when its last transaction or query ends.
 #[derive(Debug, Default)]
 pub(super) struct OpenJob {
     parts: usize,
     last: RigTime,
     trouble: Option<Message>,
     rewrites: Vec<ModuleId>,
+    /// What each query has delivered so far, by its position in the job.
+    delivered: Vec<Delivered>,
 }
 
 impl OpenJob {
     pub(super) fn part_begun(&mut self) {
         self.parts += 1;
+    }
+
+    pub(super) fn query_begun(&mut self) {
+        self.parts += 1;
+        self.delivered.push(Delivered::default());
     }
 
     /// Closes the transaction of a lost write; the job then waits for the repetition of this write, which begins later.
@@ -32,18 +40,46 @@ impl OpenJob {
         before != self.rewrites.len()
     }
 
-    /// Closes one transaction and keeps the first trouble; after the last transaction, returns the result of the job.
+    /// Keeps this trouble unless there is an earlier one.
+    pub(super) fn fail(&mut self, trouble: Message) {
+        self.trouble.get_or_insert(trouble);
+    }
+
+    /// Closes one transaction and keeps the first trouble; after the last one, returns the result of the job.
     pub(super) fn part_done(&mut self, at: RigTime, trouble: Option<Message>) -> Option<JobDone> {
         self.parts = self.parts.saturating_sub(1);
         self.last = at;
-        if self.trouble.is_none() {
-            self.trouble = trouble;
-        }
+        trouble.into_iter().for_each(|it| self.fail(it));
         self.if_empty(self.last)
     }
 
+    /// Closes the query at a position; after the last part of the job, returns the result of the job.
+    pub(super) fn query_done(
+        &mut self,
+        position: usize,
+        at: RigTime,
+        result: Result<Delivered, Message>,
+    ) -> Option<JobDone> {
+        assert!(position < self.delivered.len(), "a query of another job");
+        let at = self.last.max(at);
+        match result {
+            Ok(delivered) => {
+                self.delivered[position] = delivered;
+                self.part_done(at, None)
+            }
+            Err(trouble) => self.part_done(at, Some(trouble)),
+        }
+    }
+
     /// Returns the result of a job without open transactions.
-    pub(super) fn if_empty(&self, at: RigTime) -> Option<JobDone> {
-        (self.parts == 0).then(|| JobDone::new(at, self.trouble.clone()))
+    pub(super) fn if_empty(&mut self, at: RigTime) -> Option<JobDone> {
+        (self.parts == 0).then(|| JobDone {
+            at,
+            trouble: self.trouble.clone(),
+            delivered: match self.trouble {
+                Some(_) => Vec::new(),
+                None => std::mem::take(&mut self.delivered),
+            },
+        })
     }
 }

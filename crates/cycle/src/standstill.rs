@@ -1,4 +1,4 @@
-//! Verifies the modules before any motion, and makes the outputs safe at the end of a run.
+//! Verifies modules and instruments before any motion; makes outputs, then instruments, safe at the end of a run.
 
 use super::traffic::Purpose;
 use super::{Cycle, Event, IDLE, commission};
@@ -9,7 +9,8 @@ use units::Span;
 const SAFE_WITHIN: Span = Span::ms(2000);
 
 impl Cycle {
-    /// Compares every module with the wiring; restores the settings that an interrupted run left in a module.
+    /// Compares every module with the wiring; restores the settings that an interrupted run left in a module; prepares the
+    /// instruments.
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
         assert!(self.traffic.is_quiet(), "verified while a line is in use");
@@ -22,8 +23,8 @@ impl Cycle {
         };
         match verification.run().await {
             Ok(restored) => {
-                self.verified = true;
                 restored.into_iter().for_each(|it| self.note_alarm(it));
+                self.verified = self.prepare_instruments().await;
             }
             Err(alarm) => {
                 self.note_alarm(alarm);
@@ -47,8 +48,14 @@ impl Cycle {
         }
     }
 
-    /// Writes the safe outputs and waits until every module has confirmed, or the time is up.
+    /// Makes the outputs of the modules safe, then the instruments.
     pub(super) async fn make_safe(&mut self) {
+        self.write_safe_outputs().await;
+        self.make_instruments_safe().await;
+    }
+
+    /// Writes the safe outputs and waits until every module has confirmed, or the time is up.
+    async fn write_safe_outputs(&mut self) {
         let end = self.pace.now() + SAFE_WITHIN;
         self.traffic.only_writes();
         self.making_safe = true;

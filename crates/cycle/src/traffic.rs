@@ -8,6 +8,7 @@ use super::scan_schedule::{ScanPoll, ScanSchedule};
 use bus::{Answer, Request};
 use dcon::{Command, Common};
 use machine::instrument::act::JobDone;
+use machine::instrument::query::Delivered;
 use machine::rig::point::{DigitalIn, DigitalInput};
 use machine::rig::wiring::{LineId, ModuleId, Wiring};
 use std::collections::{BTreeSet, VecDeque};
@@ -247,9 +248,35 @@ impl Traffic {
         written.collect()
     }
 
+    /// Makes the measuring job fail for this reason.
+    pub fn fail_job(&mut self, trouble: Message) {
+        if let Some(job) = &mut self.job {
+            job.fail(trouble);
+        }
+    }
+
+    /// Makes the measuring job wait for one more query of an instrument.
+    pub fn query_begun(&mut self) {
+        if let Some(job) = &mut self.job {
+            job.query_begun();
+        }
+    }
+
+    /// Closes a query of the measuring job; after the last part, returns the result of the job.
+    pub fn query_done(
+        &mut self,
+        position: usize,
+        at: RigTime,
+        result: Result<Delivered, Message>,
+    ) -> Option<JobDone> {
+        let done = self.job.as_mut()?.query_done(position, at, result)?;
+        self.job = None;
+        Some(done)
+    }
+
     /// Returns the result of a measuring job that needed no transaction.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
-        let done = self.job.as_ref()?.if_empty(now)?;
+        let done = self.job.as_mut()?.if_empty(now)?;
         self.job = None;
         Some(done)
     }

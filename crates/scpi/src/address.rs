@@ -58,6 +58,14 @@ impl LinkAddress {
     /// Forms of an address in words.
     pub const FORMS: &str =
         "tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDR or gpib-serial:PATH:BAUD:ADDR";
+
+    /// Returns the place of the stream, without its kind and without a GPIB address: `HOST:PORT` or `PATH:BAUD`.
+    pub fn place(&self) -> String {
+        match &self.transport {
+            Transport::Tcp { host, port } => format!("{host}:{port}"),
+            Transport::Serial { path, baud } => format!("{path}:{baud}"),
+        }
+    }
 }
 
 impl FromStr for LinkAddress {

@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
 /// Arguments whose values are codes, with the family of their texts: `bin` = `coil` shows the text `bin-coil`.
-const NAMES: [(&str, &str); 32] = [
+const NAMES: [(&str, &str); 33] = [
     ("actuator", "actuator"),
     ("alarm", "alarm"),
     ("bin", "bin"),
@@ -23,6 +23,7 @@ const NAMES: [(&str, &str); 32] = [
     ("characteristic", "characteristic"),
     ("detail", "detail"),
     ("expects", "signal"),
+    ("failure", "instrument"),
     ("fault", "fault"),
     ("found_role", "role"),
     ("input", "signal"),

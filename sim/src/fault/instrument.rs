@@ -110,6 +110,19 @@ impl InstrumentFaults {
     /// # Errors
     /// Fails when the value does not have the form that the fault expects.
     pub fn add(&mut self, name: &str, value: Option<&str>) -> Result<bool, SimError> {
+        self.add_from(0, name, value)
+    }
+
+    /// Adds a fault whose times count from `now_us`.
+    ///
+    /// # Errors
+    /// Fails as [`InstrumentFaults::add`] does.
+    pub fn add_from(
+        &mut self,
+        now_us: u64,
+        name: &str,
+        value: Option<&str>,
+    ) -> Result<bool, SimError> {
         let Some((fault, _, default, _)) = LIST.iter().find(|(_, known, ..)| *known == name) else {
             return Ok(false);
         };
@@ -118,7 +131,7 @@ impl InstrumentFaults {
             Some((target, rest)) => (Some(target.to_owned()), rest),
             None => (None, text),
         };
-        let request = FaultRequest::read(name, text)?;
+        let request = FaultRequest::read(name, text)?.from(now_us);
         let (probability, ms) = match (request.value.split_once('/'), default.split_once('/')) {
             (Some((probability, ms)), Some(_)) => (probability, ms),
             (None, Some((_, ms))) => (request.value, ms),

@@ -1,35 +1,138 @@
-//! Instruments around one circuit, from event to event.
+//! Instruments with their links, and a bench: instruments around one circuit, from event to event.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::circuit::Circuit;
 use super::device::Device;
+use super::file::Link;
 use super::port::{Out, Port};
+use crate::error::SimError;
 use crate::fault::instrument::InstrumentFaults;
+use crate::shared::check_targets;
 
-/// Instruments, circuit and links.
+/// Instruments with their links and faults. Bench or rig keeps their clock and circuit.
+pub struct Instruments {
+    pub(crate) devices: Vec<Device>,
+    pub(crate) ports: Vec<Port>,
+    pub(crate) faults: InstrumentFaults,
+}
+
+impl Instruments {
+    /// Returns the next instant at which an instrument acts, with its number.
+    pub fn next(&self) -> Option<(u64, usize)> {
+        let due = self.devices.iter().enumerate();
+        due.filter_map(|(number, device)| Some((device.next_us()?, number)))
+            .min()
+    }
+
+    /// Lets an instrument act at `now_us`, to which the circuit has advanced.
+    pub fn act(&mut self, number: usize, now_us: u64, circuit: &mut dyn Circuit) {
+        self.devices[number].tick(now_us, circuit, &mut self.faults);
+    }
+
+    /// Checks that every instrument or adapter that a fault names exists.
+    ///
+    /// # Errors
+    /// Fails at the first unknown name.
+    pub fn check_targets(&self) -> Result<(), SimError> {
+        let known = |target: &str| {
+            self.devices.iter().any(|device| device.name == target)
+                || self.ports.iter().any(|port| port.name == target)
+        };
+        let expected = "an instrument of rig.toml, or HOST:PORT of an adapter";
+        check_targets(self.faults.targets(), expected, known)
+    }
+
+    /// Returns name and link of each port, in the order of their numbers.
+    pub fn ports(&self) -> Vec<(String, Link)> {
+        let port = |port: &Port| (port.name.clone(), port.link);
+        self.ports.iter().map(port).collect()
+    }
+}
+
+/// Instruments that links reach: a bench, or those of a rig.
+pub trait Desk: Send + Sync {
+    /// Advances instruments and circuit to `now_us`, then works with the instruments under the lock.
+    fn at(&self, now_us: u64, work: &mut dyn FnMut(&mut Instruments));
+
+    /// Works with the instruments as they are.
+    fn look(&self, work: &mut dyn FnMut(&Instruments));
+
+    /// Advances instruments and circuit.
+    fn advance(&self, now_us: u64) {
+        self.at(now_us, &mut |_| {});
+    }
+
+    /// Returns name and link of each port, in the order of their numbers.
+    fn ports(&self) -> Vec<(String, Link)> {
+        let mut ports = Vec::new();
+        self.look(&mut |it| ports = it.ports());
+        ports
+    }
+
+    /// Returns the name of each instrument behind a port at `place` (`tcp:HOST:PORT`, `serial:PATH:BAUD`) with its link.
+    fn links(&self, port: usize, place: &str) -> Vec<(String, String)> {
+        let mut links = Vec::new();
+        self.look(&mut |it| links = it.ports[port].links(place, &it.devices));
+        links
+    }
+
+    /// Accepts a host; `false` when a fault keeps the port busy.
+    fn open(&self, port: usize, now_us: u64) -> bool {
+        let mut open = false;
+        self.at(now_us, &mut |it| {
+            open = it.ports[port].open(now_us, &mut it.faults);
+        });
+        open
+    }
+
+    /// Ends the connection of the host.
+    fn close(&self, port: usize, now_us: u64) {
+        self.at(now_us, &mut |it| {
+            it.ports[port].close(now_us, &mut it.devices, &mut it.faults);
+        });
+    }
+
+    /// Takes bytes of the host.
+    fn receive(&self, port: usize, bytes: &[u8], now_us: u64) {
+        self.at(now_us, &mut |it| {
+            it.ports[port].receive(bytes, now_us, &mut it.devices, &mut it.faults);
+        });
+    }
+
+    /// Returns what leaves the port by now.
+    fn due(&self, port: usize, now_us: u64) -> Vec<Out> {
+        let mut due = Vec::new();
+        self.at(now_us, &mut |it| {
+            it.ports[port].collect(now_us, &mut it.devices, &mut it.faults);
+            due = it.ports[port].due(now_us);
+        });
+        due
+    }
+
+    /// Returns the next instant at which something may leave the port.
+    fn next_us(&self, port: usize) -> Option<u64> {
+        let mut next_us = None;
+        self.look(&mut |it| next_us = it.ports[port].next_us(&it.devices));
+        next_us
+    }
+}
+
+/// Instruments and circuit.
 pub struct Bench {
-    pub(super) devices: Vec<Device>,
-    pub(super) ports: Vec<Port>,
+    pub(super) instruments: Instruments,
     pub(super) circuit: Box<dyn Circuit>,
-    pub(super) faults: InstrumentFaults,
     pub(super) now_us: u64,
 }
 
 impl Bench {
     /// Advances instruments and circuit to `to_us`.
     pub fn advance(&mut self, to_us: u64) {
-        loop {
-            let due = self.devices.iter().enumerate();
-            let next = due
-                .filter_map(|(number, device)| Some((device.next_us()?, number)))
-                .min();
-            let Some((at_us, number)) = next.filter(|(at_us, _)| *at_us <= to_us) else {
-                break;
-            };
+        while let Some((at_us, number)) = self.instruments.next().filter(|it| it.0 <= to_us) {
             self.now_us = self.now_us.max(at_us);
             self.circuit.advance(self.now_us);
-            self.devices[number].tick(self.now_us, self.circuit.as_mut(), &mut self.faults);
+            self.instruments
+                .act(number, self.now_us, self.circuit.as_mut());
         }
         self.now_us = self.now_us.max(to_us);
         self.circuit.advance(self.now_us);
@@ -50,54 +153,16 @@ impl SharedBench {
     pub fn lock(&self) -> MutexGuard<'_, Bench> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
 
-    /// Returns name and link of each port, in the order of their numbers.
-    pub fn ports(&self) -> Vec<(String, super::file::Link)> {
-        self.lock()
-            .ports
-            .iter()
-            .map(|port| (port.name.clone(), port.link))
-            .collect()
-    }
-
-    /// Returns the name of each instrument behind a port at `place` (`tcp:HOST:PORT`, `serial:PATH:BAUD`) with its link.
-    pub(super) fn links(&self, port: usize, place: &str) -> Vec<(String, String)> {
-        let bench = self.lock();
-        bench.ports[port].links(place, &bench.devices)
-    }
-
-    /// Accepts a host; `false` when a fault keeps the port busy.
-    pub fn open(&self, port: usize, now_us: u64) -> bool {
+impl Desk for SharedBench {
+    fn at(&self, now_us: u64, work: &mut dyn FnMut(&mut Instruments)) {
         let bench = &mut *self.lock();
         bench.advance(now_us);
-        bench.ports[port].open(now_us, &mut bench.faults)
+        work(&mut bench.instruments);
     }
 
-    /// Ends the connection of the host.
-    pub fn close(&self, port: usize, now_us: u64) {
-        let bench = &mut *self.lock();
-        bench.advance(now_us);
-        bench.ports[port].close(now_us, &mut bench.devices, &mut bench.faults);
-    }
-
-    /// Takes bytes of the host.
-    pub fn receive(&self, port: usize, bytes: &[u8], now_us: u64) {
-        let bench = &mut *self.lock();
-        bench.advance(now_us);
-        bench.ports[port].receive(bytes, now_us, &mut bench.devices, &mut bench.faults);
-    }
-
-    /// Returns what leaves the port by now.
-    pub fn due(&self, port: usize, now_us: u64) -> Vec<Out> {
-        let bench = &mut *self.lock();
-        bench.advance(now_us);
-        bench.ports[port].collect(now_us, &mut bench.devices, &mut bench.faults);
-        bench.ports[port].due(now_us)
-    }
-
-    /// Returns the next instant at which something may leave the port.
-    pub fn next_us(&self, port: usize) -> Option<u64> {
-        let bench = self.lock();
-        bench.ports[port].next_us(&bench.devices)
+    fn look(&self, work: &mut dyn FnMut(&Instruments)) {
+        work(&self.lock().instruments);
     }
 }

@@ -15,6 +15,8 @@ pub enum Terminal {
     Line,
     /// Load current, as the voltage over the shunt divided by its resistance.
     Load,
+    /// Voltage over the output at the socket of the part, apart from the wires of an instrument.
+    Socket,
     /// Voltage over the output behind the clamp of +-10 V.
     Clamped,
 }
@@ -25,6 +27,7 @@ read_words!(Terminal {
     "output" => Self::Output,
     "line" => Self::Line,
     "load" => Self::Load,
+    "socket" => Self::Socket,
     "clamped" => Self::Clamped,
 });
 

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 use super::adapter::Adapter;
-use super::bench::{Bench, SharedBench};
+use super::bench::{Bench, Instruments, SharedBench};
 use super::circuit::Circuit;
 use super::device::Device;
 use super::instrument::{self, Channel, Fitting, Model};
@@ -103,11 +103,14 @@ fn built(keys: &Table, seed: u64, faults: &[String]) -> Result<SharedBench, SimE
             .map(|(name, link, it)| Port::new(name, link, Behind::Adapter(it))),
     );
     let faults = active(faults, seed, |target| names.contains(target))?;
-    Ok(SharedBench::new(Bench {
+    let instruments = Instruments {
         devices,
         ports,
-        circuit,
         faults,
+    };
+    Ok(SharedBench::new(Bench {
+        instruments,
+        circuit,
         now_us: 0,
     }))
 }
@@ -154,7 +157,7 @@ fn attach(
 }
 
 /// Reads the keys of a model: a digitizer has channels, any other model one pair of terminals.
-fn fitting(keys: &Table, model: Model) -> Result<Fitting, ConfigError> {
+pub(super) fn fitting(keys: &Table, model: Model) -> Result<Fitting, ConfigError> {
     let latency_ms = setting::number(keys, "latency_ms", 0.0..=1e6)?;
     let (mut at, mut channels) = (None, Vec::new());
     if model.is_digitizer() {

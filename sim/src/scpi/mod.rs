@@ -9,6 +9,7 @@
 //! | [`device`] | an instrument behind its message queue |
 //! | [`adapter`], [`port`] | GPIB adapter; bytes in and out of a link, with its faults |
 //! | [`bench`], [`file`] | instruments and circuit together, from a file |
+//! | [`of_rig`] | instruments of a rig, from its files |
 //! | [`serve`] | sockets and pseudo-terminals in real time, streams in virtual time |
 
 pub mod adapter;
@@ -19,6 +20,7 @@ pub mod file;
 pub mod instrument;
 pub mod line;
 pub mod message;
+pub mod of_rig;
 pub mod passive;
 pub mod port;
 pub mod relay;

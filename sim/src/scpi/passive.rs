@@ -5,7 +5,7 @@ use super::line::Line;
 use super::sources::Sources;
 
 /// Voltage at which the clamp limits, volts.
-pub(super) const CLAMP_V: f64 = 10.0;
+pub const CLAMP_V: f64 = 10.0;
 
 /// One resistance at the input, one at the output, one in the load circuit.
 pub struct Passive {
@@ -54,7 +54,7 @@ impl Circuit for Passive {
             Terminal::Input | Terminal::Pulse => {
                 over_resistor(self.sources.at_input(), self.input_ohm)
             }
-            Terminal::Output => match self.sources.output {
+            Terminal::Output | Terminal::Socket => match self.sources.output {
                 Drive::Open => fed,
                 drive => over_resistor(drive, self.output_ohm),
             },

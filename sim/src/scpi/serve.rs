@@ -2,13 +2,14 @@
 
 use std::io;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
 use tokio::net::{TcpListener, UnixStream};
 use tokio::time::{Instant, sleep, sleep_until};
 
-use super::bench::SharedBench;
+use super::bench::{Desk, SharedBench};
 use super::file::Link;
 use super::port::Out;
 use crate::error::SimError;
@@ -25,22 +26,24 @@ const ROOM: usize = 1 << 16;
 /// Clock of the links.
 #[derive(Debug, Clone, Copy)]
 enum Clock {
+    /// Instant of rig time 0.
     Real(Instant),
-    Virtual(Pace),
+    /// Pace, with the rig time at its start, microseconds.
+    Virtual(Pace, u64),
 }
 
 impl Clock {
     fn now_us(self) -> u64 {
         match self {
             Self::Real(origin) => origin.elapsed().as_micros() as u64,
-            Self::Virtual(pace) => pace.now_us(),
+            Self::Virtual(pace, from_us) => from_us + pace.now_us(),
         }
     }
 
     fn at(self, t_us: u64) -> Instant {
         match self {
             Self::Real(origin) => origin + Duration::from_micros(t_us),
-            Self::Virtual(pace) => pace.at(t_us),
+            Self::Virtual(pace, from_us) => pace.at(t_us.saturating_sub(from_us)),
         }
     }
 }
@@ -51,7 +54,18 @@ impl Clock {
 /// # Errors
 /// Fails when the system refuses a socket or a pseudo-terminal.
 pub async fn real_time(bench: &SharedBench) -> Result<Vec<(String, String)>, SimError> {
-    let clock = Clock::Real(Instant::now());
+    in_real_time(Arc::new(bench.clone()), Instant::now()).await
+}
+
+/// Opens every port as [`real_time`] does; `origin` is the instant of rig time 0.
+///
+/// # Errors
+/// Fails as [`real_time`] does.
+pub(crate) async fn in_real_time(
+    bench: Arc<dyn Desk>,
+    origin: Instant,
+) -> Result<Vec<(String, String)>, SimError> {
+    let clock = Clock::Real(origin);
     let mut links = Vec::new();
     for (number, (name, link)) in bench.ports().into_iter().enumerate() {
         let place = open(bench.clone(), number, link, clock).await;
@@ -66,15 +80,15 @@ pub async fn real_time(bench: &SharedBench) -> Result<Vec<(String, String)>, Sim
 }
 
 /// Advances the bench while no host asks for anything.
-async fn beat(bench: SharedBench, clock: Clock) {
+async fn beat(bench: Arc<dyn Desk>, clock: Clock) {
     loop {
         sleep(BEAT).await;
-        bench.lock().advance(clock.now_us());
+        bench.advance(clock.now_us());
     }
 }
 
 /// Opens a port and starts to serve it; returns its place.
-async fn open(bench: SharedBench, number: usize, link: Link, clock: Clock) -> io::Result<String> {
+async fn open(bench: Arc<dyn Desk>, number: usize, link: Link, clock: Clock) -> io::Result<String> {
     match link {
         Link::Tcp(port) => {
             let listener = TcpListener::bind(("127.0.0.1", port)).await?;
@@ -91,7 +105,7 @@ async fn open(bench: SharedBench, number: usize, link: Link, clock: Clock) -> io
 }
 
 /// Serves one host after the other; the next one waits until the present one leaves.
-async fn accept(bench: SharedBench, number: usize, listener: TcpListener, clock: Clock) {
+async fn accept(bench: Arc<dyn Desk>, number: usize, listener: TcpListener, clock: Clock) {
     loop {
         let Ok((mut stream, _)) = listener.accept().await else {
             continue;
@@ -99,15 +113,18 @@ async fn accept(bench: SharedBench, number: usize, listener: TcpListener, clock:
         let _ = stream.set_nodelay(true);
         if bench.open(number, clock.now_us()) {
             // An error means that the host is gone, as an end of file does.
-            let _ = converse(&bench, number, &mut stream, clock).await;
+            let _ = converse(&*bench, number, &mut stream, clock).await;
             bench.close(number, clock.now_us());
         }
     }
 }
 
 /// Serves a terminal, whose hosts come and go unseen; a connection that a fault ends goes on at once.
-async fn keep(bench: SharedBench, number: usize, mut terminal: UnixStream, clock: Clock) {
-    while converse(&bench, number, &mut terminal, clock).await.is_ok() {
+async fn keep(bench: Arc<dyn Desk>, number: usize, mut terminal: UnixStream, clock: Clock) {
+    while converse(&*bench, number, &mut terminal, clock)
+        .await
+        .is_ok()
+    {
         bench.close(number, clock.now_us());
     }
 }
@@ -115,22 +132,22 @@ async fn keep(bench: SharedBench, number: usize, mut terminal: UnixStream, clock
 /// A connector of a port in virtual time.
 #[derive(Clone)]
 pub struct Plug {
-    bench: SharedBench,
+    bench: Arc<dyn Desk>,
     number: usize,
-    pace: Pace,
+    clock: Clock,
 }
 
 impl Plug {
     /// Connects to the port; `None` while a fault keeps it busy. The task ends when the host drops the stream.
     pub fn open(&self) -> Option<DuplexStream> {
-        let clock = Clock::Virtual(self.pace);
+        let clock = self.clock;
         let (bench, number) = (self.bench.clone(), self.number);
         if !bench.open(number, clock.now_us()) {
             return None;
         }
         let (host, mut device) = tokio::io::duplex(ROOM);
         tokio::spawn(async move {
-            let _ = converse(&bench, number, &mut device, clock).await;
+            let _ = converse(&*bench, number, &mut device, clock).await;
             bench.close(number, clock.now_us());
         });
         Some(host)
@@ -140,23 +157,27 @@ impl Plug {
 /// Returns a connector per port on the current runtime, whose clock is paused; one rig microsecond is one
 /// millisecond of the runtime.
 pub fn virtual_time(bench: &SharedBench) -> Vec<(String, Plug)> {
-    let pace = Pace::start();
+    plugs(Arc::new(bench.clone()), 0)
+}
+
+/// Returns a connector per port as [`virtual_time`] does; rig time is `from_us` now.
+pub(crate) fn plugs(bench: Arc<dyn Desk>, from_us: u64) -> Vec<(String, Plug)> {
+    let clock = Clock::Virtual(Pace::start(), from_us);
     let plug = |(number, (name, _)): (usize, (String, Link))| {
-        (
-            name,
-            Plug {
-                bench: bench.clone(),
-                number,
-                pace,
-            },
-        )
+        let bench = bench.clone();
+        let plug = Plug {
+            bench,
+            number,
+            clock,
+        };
+        (name, plug)
     };
     bench.ports().into_iter().enumerate().map(plug).collect()
 }
 
 /// Serves until the host or a fault ends the connection.
 async fn converse<S: AsyncRead + AsyncWrite + Unpin>(
-    bench: &SharedBench,
+    bench: &dyn Desk,
     number: usize,
     stream: &mut S,
     clock: Clock,

@@ -12,8 +12,54 @@ pub struct Sources {
     /// Present instant, microseconds.
     pub now_us: u64,
     input: Drive,
-    pulse: Drive,
-    pulse_from_us: u64,
+    pulse: PulseInput,
+}
+
+/// Pulse source at an input, with the instant from which it has driven so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PulseInput {
+    drive: Drive,
+    from_us: f64,
+}
+
+impl Default for PulseInput {
+    fn default() -> Self {
+        Self {
+            drive: Drive::Open,
+            from_us: 0.0,
+        }
+    }
+}
+
+impl PulseInput {
+    /// Connects a source at `now_us`.
+    pub fn new(drive: Drive, now_us: f64) -> Self {
+        Self {
+            drive,
+            from_us: now_us,
+        }
+    }
+
+    /// Returns the source with its present level.
+    pub fn at(&self, now_us: f64) -> Drive {
+        match self.drive {
+            Drive::Pulses(pulses) => Drive::Voltage {
+                volts: pulses.volts(now_us - self.from_us),
+                limit_a: f64::INFINITY,
+                source_ohm: pulses.source_ohm,
+            },
+            other => other,
+        }
+    }
+
+    /// Returns the time to the next edge, microseconds; `None` without a further edge.
+    pub fn edge_us(&self, now_us: f64) -> Option<f64> {
+        let Drive::Pulses(pulses) = self.drive else {
+            return None;
+        };
+        let (edge_us, _) = pulses.edge_us(now_us - self.from_us)?;
+        Some(edge_us)
+    }
 }
 
 impl Sources {
@@ -24,8 +70,7 @@ impl Sources {
             output: Drive::Open,
             now_us: 0,
             input: Drive::Open,
-            pulse: Drive::Open,
-            pulse_from_us: 0,
+            pulse: PulseInput::default(),
         }
     }
 
@@ -39,39 +84,24 @@ impl Sources {
     pub fn connect(&mut self, terminal: Terminal, drive: Drive) {
         match terminal {
             Terminal::Input => self.input = drive,
-            Terminal::Pulse => {
-                self.pulse = drive;
-                self.pulse_from_us = self.now_us;
-            }
+            Terminal::Pulse => self.pulse = PulseInput::new(drive, self.now_us as f64),
             Terminal::Output => self.output = drive,
             Terminal::Line => self.line.drive(drive, self.now_us),
-            Terminal::Load | Terminal::Clamped => {}
+            Terminal::Load | Terminal::Clamped | Terminal::Socket => {}
         }
     }
 
     /// Returns the source at the input: the source-measure unit, or the pulse source while the unit is off.
     pub fn at_input(&self) -> Drive {
-        match (self.input, self.pulse) {
-            (Drive::Open, Drive::Pulses(pulses)) => Drive::Voltage {
-                volts: pulses.volts(self.pulsed_us()),
-                limit_a: f64::INFINITY,
-                source_ohm: pulses.source_ohm,
-            },
-            (Drive::Open, pulse) => pulse,
-            (unit, _) => unit,
+        match self.input {
+            Drive::Open => self.pulse.at(self.now_us as f64),
+            unit => unit,
         }
     }
 
     /// Returns the time to the next edge of the pulses, microseconds from 1; `None` without a further edge.
     pub fn edge_us(&self) -> Option<u64> {
-        let Drive::Pulses(pulses) = self.pulse else {
-            return None;
-        };
-        let (edge_us, _) = pulses.edge_us(self.pulsed_us())?;
+        let edge_us = self.pulse.edge_us(self.now_us as f64)?;
         Some((edge_us.ceil() as u64).max(1))
-    }
-
-    fn pulsed_us(&self) -> f64 {
-        (self.now_us - self.pulse_from_us) as f64
     }
 }

@@ -3,7 +3,8 @@
 //! ```text
 //! terminals -> wiring -> signals -> board      (coil supply, gates, contact source, monitors)
 //!                                -> mechanism  (cylinders, axis, sensors; places and parts)
-//!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay, resistor)
+//!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay, resistor, ssr)
+//! instruments -> electrical -> ssr_board, the board of a rig with instruments (fixture chooses the board)
 //! ```
 //!
 //! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the board. Every subject
@@ -18,8 +19,10 @@ pub mod cylinder;
 pub mod defect;
 pub mod draw;
 pub mod edges;
+mod electrical;
 pub mod environment;
 pub mod fault;
+pub mod fixture;
 pub mod gates;
 pub mod magazine;
 pub mod mechanism;
@@ -31,24 +34,26 @@ pub mod relay;
 pub mod resistor;
 pub mod signal;
 pub mod specimen;
+pub mod ssr;
+pub mod ssr_board;
 pub mod table;
 pub mod wiring;
 
 use std::path::PathBuf;
 
 use crate::config::{ConfigError, Files, RigFile, SupplyRange, read_rig, read_world};
+use crate::scpi::circuit::Circuit;
 use crate::terminal::Plant;
 use axis::Axis;
-use board::Board;
-use board::supply::CoilSupply;
 use bodies::Bodies;
 use draw::{Draw, Subject};
 use edges::Edges;
 use environment::Environment;
 use fault::{Fault, WorldFaults};
+use fixture::Fixture;
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
-use signal::{Commands, In};
+use signal::{Commands, In, Out};
 use specimen::Specimen;
 use table::WorldTable;
 use wiring::{Wire, Wiring};
@@ -76,10 +81,12 @@ pub struct WorldOptions {
 #[derive(Debug, Clone)]
 pub struct World {
     wiring: Wiring,
-    board: Board,
+    fixture: Fixture,
     mechanism: Mechanism,
     environment: Environment,
     commands: Commands,
+    /// True while the interlock keeps the jaws from opening.
+    holds_jaws: bool,
     edges: Vec<(Wire<In>, Edges)>,
     drift: Option<f64>,
     film: Option<f64>,
@@ -108,8 +115,8 @@ impl World {
         let stuck_range = faults.stuck_range(&rig.supply_ranges, &path)?;
         let noise_seed = faults.noise_seed();
         let wiring = Wiring::new(&rig);
-        let supply = CoilSupply::new(&table.board, &wiring, rig.supply_ranges.clone());
-        let board = Board::new(&table.board, &rig.reference, supply, &mut draw);
+        let recipe = (&options.files, options.recipe.as_str());
+        let fixture = Fixture::new(recipe, &rig, &table, &wiring, &mut draw)?;
         let clock_hz =
             rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
         let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
@@ -130,10 +137,11 @@ impl World {
         let edges = Vec::new();
         let mut world = Self {
             wiring,
-            board,
+            fixture,
             mechanism,
             environment,
             commands,
+            holds_jaws: false,
             edges,
             drift,
             film,
@@ -166,7 +174,7 @@ impl World {
     /// Returns a digital signal at this instant.
     fn signal(&self, signal: In) -> bool {
         let own = self.mechanism.signal(signal, self.now_us);
-        own.or_else(|| self.board.signal(signal, self.specimen()))
+        own.or_else(|| self.fixture.signal(signal, self.specimen()))
             .unwrap_or(false)
     }
 
@@ -188,7 +196,30 @@ impl World {
     /// Makes the range relays of the supply stick, if that fault has not struck yet.
     fn stick_range(&mut self) {
         if let Some(range) = self.stuck_range.take() {
-            self.board.stick(range);
+            self.fixture.stick(range);
+        }
+    }
+
+    /// Returns the instant of the next event that the world causes by itself, microseconds; `None` without one.
+    fn next_us(&self) -> Option<u64> {
+        let mechanism_us = Some(self.mechanism.next_us()).filter(|next_us| *next_us < u64::MAX);
+        let fixture_us = self.fixture.next_us();
+        [mechanism_us, fixture_us].into_iter().flatten().min()
+    }
+
+    /// Passes the commands to the mechanism, without the valve of the jaws while the interlock holds them.
+    fn move_mechanism(&mut self) {
+        self.holds_jaws = !self.fixture.frees_jaws();
+        let open = self.commands.is_on(Out::ClampOpen) && !self.holds_jaws;
+        let commands = self.commands.with(Out::ClampOpen, open);
+        self.mechanism.command(commands, self.now_us);
+    }
+
+    /// Follows the interlock of the jaws.
+    fn watch_jaws(&mut self) {
+        if self.holds_jaws == self.fixture.frees_jaws() {
+            self.move_mechanism();
+            self.mechanism_changed();
         }
     }
 
@@ -199,7 +230,9 @@ impl World {
             self.mechanism.probes_up(now),
             self.mechanism.probes_touch(now),
         );
-        self.board.probe(up, touch, in_nest(&mut self.mechanism));
+        let door_closed = self.signal(In::DoorClosed);
+        let probes = (up, touch, door_closed);
+        self.fixture.probe(probes, in_nest(&mut self.mechanism));
         for (wire, edges) in &mut self.edges {
             if let Some(present) = self.mechanism.signal(wire.signal, now) {
                 edges.level(present != wire.active_low, now);
@@ -207,10 +240,10 @@ impl World {
         }
         if self.mechanism.places.entered() > 0 {
             if let Some(drift) = self.drift.take() {
-                self.board.drift(drift);
+                self.fixture.drift(drift);
             }
             if let Some(film) = self.film.take() {
-                self.board.add_film_per_touch(film / 100.0);
+                self.fixture.add_film_per_touch(film / 100.0);
             }
             self.stick_range();
         }
@@ -219,16 +252,19 @@ impl World {
 
 impl Plant for World {
     fn advance(&mut self, t_us: u64) {
-        while self.mechanism.next_us() <= t_us {
-            self.now_us = self.mechanism.next_us().max(self.now_us);
-            self.board
+        while let Some(next_us) = self.next_us().filter(|next_us| *next_us <= t_us) {
+            self.now_us = next_us.max(self.now_us);
+            self.fixture
                 .advance(self.now_us as f64, in_nest(&mut self.mechanism));
-            self.mechanism.process(self.now_us);
-            self.mechanism_changed();
+            self.watch_jaws();
+            if self.mechanism.next_us() <= self.now_us {
+                self.mechanism.process(self.now_us);
+                self.mechanism_changed();
+            }
         }
         if t_us > self.now_us {
             self.now_us = t_us;
-            self.board
+            self.fixture
                 .advance(t_us as f64, in_nest(&mut self.mechanism));
         }
     }
@@ -239,15 +275,15 @@ impl Plant for World {
         }
         match wiring::at(&self.wiring.quantities, module, channel) {
             Some(wire) => self
-                .board
-                .clip(self.board.quantity(wire.signal, self.specimen()) * wire.gain),
+                .fixture
+                .analog_v(wire.signal, wire.gain, self.specimen()),
             None => f64::NAN,
         }
     }
 
     fn analog_out(&mut self, module: &str, volts: f64) {
         if let Some(wire) = wiring::at(&self.wiring.sources, module, 0) {
-            self.board
+            self.fixture
                 .supply(wire.signal, volts, in_nest(&mut self.mechanism));
         }
     }
@@ -271,9 +307,9 @@ impl Plant for World {
             return;
         }
         self.commands = commands;
-        self.mechanism.command(commands, self.now_us);
+        self.move_mechanism();
         self.mechanism_changed();
-        self.board.command(commands, in_nest(&mut self.mechanism));
+        self.fixture.command(commands, in_nest(&mut self.mechanism));
     }
 
     fn edges(&mut self, module: &str, channel: u8) -> u64 {
@@ -287,7 +323,11 @@ impl Plant for World {
 
     fn gate_open_us(&mut self, module: &str, channel: u8) -> f64 {
         let wire = wiring::at(&self.wiring.gates, module, channel);
-        wire.map_or(0.0, |w| self.board.gate_open_us(w.signal as usize))
+        wire.map_or(0.0, |w| self.fixture.gate_open_us(w.signal as usize))
+    }
+
+    fn circuit(&mut self) -> Option<&mut dyn Circuit> {
+        Some(self)
     }
 
     fn reference_clock_hz(&self) -> f64 {

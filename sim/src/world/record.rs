@@ -38,7 +38,7 @@ impl WorldRecord for World {
     }
 
     fn overdrives(&self) -> &[Overdrive] {
-        self.board.overdrives()
+        self.fixture.overdrives()
     }
 
     fn inject(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {

@@ -46,6 +46,11 @@ vocabulary! {
         GripperPart = "gripper_part", ButtonStop = "button_stop", ButtonReset = "button_reset",
         BeamPass = "beam_pass", BeamCoil = "beam_coil", BeamVoltage = "beam_voltage",
         BeamTime = "beam_time", BeamContact = "beam_contact", BeamRetest = "beam_retest",
+        BeamInput = "beam_input", BeamOutput = "beam_output", BeamLeakage = "beam_leakage",
+        KelvinInPlus = "kelvin_in_plus", KelvinInMinus = "kelvin_in_minus",
+        KelvinOut1 = "kelvin_out_1", KelvinOut2 = "kelvin_out_2",
+        LineOpen = "line_open", LoopOpen = "loop_open", OutputSafe = "output_safe",
+        ShortSeen = "short_seen",
     }
 }
 
@@ -64,6 +69,10 @@ vocabulary! {
         AxisPoint1 = "axis_point_1", AxisPoint2 = "axis_point_2", AxisDrive = "axis_drive",
         AxisServoOn = "axis_servo_on", AxisReset = "axis_reset", LampGreen = "lamp_green",
         LampYellow = "lamp_yellow", LampRed = "lamp_red", Buzzer = "buzzer",
+        LineContactor = "line_contactor", LoopContactor = "loop_contactor",
+        SmuToOutput = "smu_to_output", SmuLoad = "smu_load", OutputPolarity = "output_polarity",
+        DriveSelect = "drive_select", Reference0 = "reference_0", Reference1 = "reference_1",
+        LoadSelect = "load_select", ShortCheck = "short_check", BleedOpen = "bleed_open",
     }
 }
 
@@ -75,6 +84,7 @@ vocabulary! {
         CoilVoltageFine = "coil_voltage_fine", CoilCurrentFine = "coil_current_fine",
         CoilCurrentHigh = "coil_current_high",
         ReferenceVoltage = "reference_voltage", ContactDrop = "contact_drop",
+        ResidualVoltage = "residual_voltage",
     }
 }
 

@@ -10,6 +10,7 @@ use super::draw::Draw;
 use super::probes::{Change, Contact, Pins, Supply};
 use super::relay::{self, Relay};
 use super::resistor::{self, Resistor};
+use super::ssr::{self, Ssr};
 use super::table::WorldTable;
 use crate::config::ConfigError;
 use crate::truth::PartTruth;
@@ -58,6 +59,26 @@ pub enum Specimen {
     Relay(Box<Relay>),
     /// A dummy that contains a resistor.
     Resistor(Resistor),
+    /// A solid-state relay.
+    Ssr(Box<Ssr>),
+}
+
+impl Specimen {
+    /// Returns the solid-state relay; `None` for another kind.
+    pub fn as_ssr(&self) -> Option<&Ssr> {
+        match self {
+            Self::Ssr(part) => Some(part),
+            Self::Relay(_) | Self::Resistor(_) => None,
+        }
+    }
+
+    /// Returns the solid-state relay to drive; `None` for another kind.
+    pub fn as_ssr_mut(&mut self) -> Option<&mut Ssr> {
+        match self {
+            Self::Ssr(part) => Some(part),
+            Self::Relay(_) | Self::Resistor(_) => None,
+        }
+    }
 }
 
 impl Deref for Specimen {
@@ -67,6 +88,7 @@ impl Deref for Specimen {
         match self {
             Self::Relay(relay) => relay.as_ref(),
             Self::Resistor(resistor) => resistor,
+            Self::Ssr(part) => part.as_ref(),
         }
     }
 }
@@ -76,6 +98,7 @@ impl DerefMut for Specimen {
         match self {
             Self::Relay(relay) => relay.as_mut(),
             Self::Resistor(resistor) => resistor,
+            Self::Ssr(part) => part.as_mut(),
         }
     }
 }
@@ -104,6 +127,8 @@ pub enum Lot {
     Relay(Box<relay::Lot>),
     /// Dummies; none has a certificate.
     Resistor(resistor::Lot),
+    /// Solid-state relays; none has a certificate.
+    Ssr(Box<ssr::Lot>),
 }
 
 impl Lot {
@@ -115,11 +140,19 @@ impl Lot {
         let recipe = options.files.recipe(&options.recipe)?;
         match recipe.get::<Option<String>>("kind")?.as_deref() {
             None | Some("em_relay") => {
-                let lot = relay::Lot::read(&recipe, options, world)?;
+                let world = world.relays(&options.files)?;
+                let lot = relay::Lot::read(&recipe, options, &world)?;
                 Ok(Self::Relay(Box::new(lot)))
             }
-            Some("resistor") => Ok(Self::Resistor(resistor::Lot::new(world))),
-            Some(_) => Err(recipe.wrong("kind", "em_relay or resistor")),
+            Some("resistor") => {
+                let lot = resistor::Lot::new(world, &options.files)?;
+                Ok(Self::Resistor(lot))
+            }
+            Some("ssr") => {
+                let lot = ssr::Lot::read(&recipe, options, world)?;
+                Ok(Self::Ssr(Box::new(lot)))
+            }
+            Some(_) => Err(recipe.wrong("kind", "em_relay, resistor or ssr")),
         }
     }
 
@@ -127,7 +160,7 @@ impl Lot {
     pub fn reference_parts(&self) -> u64 {
         match self {
             Self::Relay(lot) => lot.reference_parts(),
-            Self::Resistor(_) => 0,
+            Self::Resistor(_) | Self::Ssr(_) => 0,
         }
     }
 
@@ -136,6 +169,7 @@ impl Lot {
         match self {
             Self::Relay(lot) => Specimen::Relay(Box::new(lot.part(seed, index, arrival))),
             Self::Resistor(lot) => Specimen::Resistor(lot.part(seed, index, &arrival)),
+            Self::Ssr(lot) => Specimen::Ssr(Box::new(lot.part(seed, index, &arrival))),
         }
     }
 
@@ -152,7 +186,7 @@ impl Lot {
             Self::Relay(lot) => lot
                 .reference_part(seed, index, other_day, arrival)
                 .map(|relay| Specimen::Relay(Box::new(relay))),
-            Self::Resistor(_) => None,
+            Self::Resistor(_) | Self::Ssr(_) => None,
         }
     }
 }

@@ -8,6 +8,8 @@ use std::path::Path;
 
 use super::relay::table::{DefectTable, LotTable, RelayTable};
 use super::resistor::ResistorTable;
+use super::ssr::table::SsrTable;
+use super::ssr_board::FixtureTable;
 use crate::config::{ConfigError, Files};
 use crate::table::{Read, Table};
 
@@ -65,13 +67,57 @@ table!(
     FaultSpec { unit: String, default: f64, help: String }
 );
 table!(
-    /// All tables of the file.
+    /// All tables of the file; the kind of the parts decides which of them a rig needs.
     WorldTable {
-        devices: DeviceWorld, board: BoardTable, environment: EnvironmentTable, lot: LotTable,
-        relay: RelayTable, defects: DefectTable, resistor: ResistorTable, mechanism: MechanismTable,
+        devices: DeviceWorld, environment: EnvironmentTable, mechanism: MechanismTable,
         fault: BTreeMap<String, FaultSpec>,
+        board: Option<BoardTable>, lot: Option<LotTable>, relay: Option<RelayTable>,
+        defects: Option<DefectTable>, resistor: Option<ResistorTable>,
+        fixture: Option<FixtureTable>, ssr: Option<SsrTable>,
+        instrument: Option<BTreeMap<String, Table>>,
     }
 );
+
+/// Tables of electromagnetic relays and their board.
+#[derive(Debug, Clone)]
+#[allow(missing_docs)] // the fields of WorldTable with these names
+pub struct RelayWorld {
+    pub environment: EnvironmentTable,
+    pub board: BoardTable,
+    pub lot: LotTable,
+    pub relay: RelayTable,
+    pub defects: DefectTable,
+}
+
+impl WorldTable {
+    /// Returns the tables of electromagnetic relays.
+    ///
+    /// # Errors
+    /// Fails when one of them is missing.
+    pub fn relays(&self, files: &Files) -> Result<RelayWorld, ConfigError> {
+        Ok(RelayWorld {
+            environment: self.environment.clone(),
+            board: present(&self.board, "board", files)?,
+            lot: present(&self.lot, "lot", files)?,
+            relay: present(&self.relay, "relay", files)?,
+            defects: present(&self.defects, "defects", files)?,
+        })
+    }
+}
+
+/// Returns a table that the kind of the parts needs.
+///
+/// # Errors
+/// Fails when `sim.toml` lacks it.
+pub fn present<T: Clone>(table: &Option<T>, key: &str, files: &Files) -> Result<T, ConfigError> {
+    table.clone().ok_or_else(|| ConfigError::Value {
+        path: files.path("sim.toml"),
+        line: 1,
+        key: key.into(),
+        found: "nothing".into(),
+        expected: "a table".into(),
+    })
+}
 
 /// Reads `sim.toml`, with a second world file on top.
 ///

@@ -1,7 +1,9 @@
-//! Links to SCPI instruments against the simulated instruments: storms of faults in virtual time, commands in real time.
+//! Links to SCPI instruments against the simulated instruments: storms of faults in virtual time, commands in real
+//! time, lots in both.
 
 #[cfg(unix)]
 mod commands;
+mod lot;
 mod storm;
 
 use storm::{WAYS, Way, every_fault, storm};

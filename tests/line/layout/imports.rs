@@ -57,7 +57,9 @@ const REAL_TIME: &[(&str, &[&str])] = &[
     ),
     (
         "cycle",
-        &["bus", "dcon", "jiff", "machine", "texts", "tokio", "units"],
+        &[
+            "bus", "dcon", "jiff", "machine", "scpi", "texts", "tokio", "units",
+        ],
     ),
 ];
 

@@ -5,7 +5,7 @@ use super::{LotContext, Purpose};
 use anyhow::Context;
 use bus::Pace;
 use config::Plant;
-use cycle::{Cycle, CycleLinks, LineEnds};
+use cycle::{Cycle, CycleLinks, InstrumentEnds, LineEnds};
 use history::UnacknowledgedAlarm;
 use machine::dut::Recipe;
 use machine::dut::device::Rig;
@@ -22,7 +22,7 @@ pub(super) fn cycle(
     context: &LotContext,
     prior_state: PriorState,
     pace: Pace,
-    lines: Vec<LineEnds>,
+    ends: (Vec<LineEnds>, Vec<InstrumentEnds>),
     links: CycleLinks,
     attended: bool,
 ) -> anyhow::Result<Cycle> {
@@ -80,7 +80,7 @@ pub(super) fn cycle(
     for left in alarms.into_iter().filter(|_| attended) {
         raise_again(&mut station, left, context.epoch_us);
     }
-    Ok(Cycle::new(wiring, pace, station, guard, lines, links))
+    Ok(Cycle::new(wiring, pace, station, guard, ends, links))
 }
 
 /// Returns the drawing of the machine for screens, with parts of the size in `recipe`.

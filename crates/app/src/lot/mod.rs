@@ -80,7 +80,7 @@ impl LotRunner<'_> {
         controls
             .view
             .send_modify(|view| view.host = thread.rights.clone());
-        let mut lines = links::open(context, &pace, &thread.handle)?;
+        let mut lines = links::open(context, &pace, &thread.handle).await?;
         let traces = Traces::new(self.db, context.plant, &lines.logs);
         controls.show_traffic(&traces);
         let (recorder, prior_state) = Recorder::open(self.db, context)?;
@@ -119,6 +119,7 @@ impl LotRunner<'_> {
             snapshots,
         };
         let ends = std::mem::take(&mut lines.ends);
+        let ends = (ends, std::mem::take(&mut lines.instruments));
         let attended = controls.attended;
         let cycle = assemble::cycle(context, prior_state, pace, ends, links, attended)?;
         let running = thread.handle.spawn(cycle.run());

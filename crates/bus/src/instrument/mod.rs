@@ -4,9 +4,12 @@
 //! The crate [`scpi`] proves that a reply is that of its query; a link adds clock, stream and a log of the traffic.
 
 mod log;
+mod message;
+mod task;
 
 use super::{Direction, OpenPort, Pace, Port, Timer, escaped, open_serial_with};
 pub use log::{LinkLog, Traffic};
+pub use message::message;
 use scpi::{
     Failure, Flow, Form, LinkAddress, LinkSettings, Move, Program, Question, Raw, Reader, Reply,
     ReplyError, Session, Transport,
@@ -14,6 +17,7 @@ use scpi::{
 use std::fmt::Display;
 use std::future::ready;
 use std::io;
+pub use task::{ProgramAnswer, ProgramRequest, Start, serve};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio_serial::FlowControl;

@@ -24,14 +24,20 @@ fn texts(folder: &Path) -> BTreeMap<String, String> {
     all.map(|(path, text)| (within(path), text)).collect()
 }
 
+/// Returns the files of `config/` itself, without earlier revisions and without the rigs below it.
+fn default_rig() -> BTreeMap<String, String> {
+    let mut files = texts(&config());
+    let other = ["recipes/revisions/", "rigs/"];
+    files.retain(|name, _| !other.iter().any(|it| name.starts_with(it)));
+    files
+}
+
 #[test]
 fn every_file_of_the_configuration_is_compiled_in() {
     let Folder::Memory(memory) = Folder::built_in() else {
         unreachable!("files in memory")
     };
-    let mut repository = texts(&config());
-    repository
-        .retain(|name, _| !name.starts_with("recipes/revisions/") && !name.starts_with("rigs/"));
+    let repository = default_rig();
     let names: Vec<&String> = repository.keys().collect();
     assert_eq!(
         memory.texts().keys().collect::<Vec<_>>(),
@@ -135,9 +141,7 @@ fn init_writes_every_file_to_new_and_empty_directories() {
     fs::create_dir(&empty).unwrap();
     for dir in [&new, &empty] {
         init(dir).unwrap();
-        let mut repository = texts(&config());
-        repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
-        assert_eq!(texts(dir), repository);
+        assert_eq!(texts(dir), default_rig());
         check_all(&Folder::Directory(dir.clone())).unwrap();
     }
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();

@@ -120,6 +120,10 @@ codes! {
     MotionRefused = "motion_refused", Abort, Operator;
     /// A line or module does not answer, or has restarted.
     BusTrouble = "bus_trouble", Abort, Operator;
+    /// An instrument does not answer, or is not the one of the wiring.
+    InstrumentTrouble by "instrument" = "instrument_trouble", Abort, Operator;
+    /// An instrument has not confirmed its safe state in time.
+    InstrumentNotSafe by "instrument" = "instrument_not_safe", Abort, Operator;
     /// A safety input has no fresh sample.
     SensorStale = "sensor_stale", Abort, Sensor;
     /// A reply or a sample is missing, and the lateness of this computer explains it.

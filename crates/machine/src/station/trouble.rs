@@ -139,6 +139,18 @@ impl Alarm {
         Self::from(AlarmCode::BusTrouble).with_inner("detail", detail)
     }
 
+    /// Returns the alarm that the instrument with this name brings no values.
+    pub fn instrument(name: &str, detail: &Message) -> Self {
+        Self::from(AlarmCode::InstrumentTrouble)
+            .with("instrument", name)
+            .with_inner("detail", detail)
+    }
+
+    /// Returns the alarm that the instrument with this name has not confirmed its safe state.
+    pub fn instrument_not_safe(name: &str) -> Self {
+        Self::from(AlarmCode::InstrumentNotSafe).with("instrument", name)
+    }
+
     /// Returns the alarm that the port of the code reader is lost, for this reason.
     pub fn serial_reader_lost(reason: impl ToString) -> Self {
         Self::from(AlarmCode::SerialReaderLost).with("reason", reason)

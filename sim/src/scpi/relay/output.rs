@@ -1,5 +1,7 @@
 //! A solid-state relay in its circuit, stepped through time: light, firing, current zeros, heat.
 
+use super::heat::Heat;
+use super::light::Light;
 use super::truth::{Kind, REFERENCE_C, Truth};
 use crate::scpi::circuit::{Circuit, Drive, Reading, Terminal, over_resistor};
 use crate::scpi::line::Line;
@@ -9,10 +11,6 @@ use crate::scpi::sources::Sources;
 /// Longest step while the line is on, and while it is off, microseconds.
 const STEP_US: u64 = 20;
 const IDLE_STEP_US: u64 = 100_000;
-/// Time constants of junction and case, seconds, and the resistance of the case, kelvin per watt.
-const JUNCTION_S: f64 = 0.02;
-const CASE_S: f64 = 20.0;
-const CASE_K_PER_W: f64 = 8.0;
 /// Resistance of a shorted output, ohms.
 const SHORT_OHM: f64 = 0.1;
 /// Least voltage that returns at a current zero and can fire the output again, volts.
@@ -24,9 +22,7 @@ pub struct SolidState {
     sources: Sources,
     load_ohm: f64,
     load_h: f64,
-    /// Light over threshold: fires from 1 up, falls off below the hysteresis.
-    light: f64,
-    lit: bool,
+    light: Light,
     /// Sign of the half cycle that conducts, 0 while blocked.
     conducts: f64,
     /// True when the half cycle before conducted, so that this one fires at the retrigger voltage.
@@ -34,8 +30,7 @@ pub struct SolidState {
     /// Sign of the half cycle that fires without light after a failed commutation; 0 for none.
     refire: f64,
     load_a: f64,
-    junction_k: f64,
-    case_k: f64,
+    heat: Heat,
 }
 
 impl SolidState {
@@ -46,20 +41,18 @@ impl SolidState {
             sources: Sources::new(line),
             load_ohm,
             load_h,
-            light: 0.0,
-            lit: false,
+            light: Light::default(),
             conducts: 0.0,
             again: false,
             refire: 0.0,
             load_a: 0.0,
-            junction_k: 0.0,
-            case_k: 0.0,
+            heat: Heat::default(),
         }
     }
 
     /// Returns the junction's temperature, degrees Celsius.
     pub fn temperature_c(&self) -> f64 {
-        REFERENCE_C + self.junction_k + self.case_k
+        REFERENCE_C + self.heat.kelvin()
     }
 
     fn is_ac(&self) -> bool {
@@ -72,64 +65,21 @@ impl SolidState {
 
     /// Returns voltage and current at the input.
     fn at_input(&self) -> Reading {
-        let (truth, now_c) = (&self.truth, self.temperature_c());
-        let at_voltage = |volts: f64, source_ohm: f64| {
-            let amps = truth.input_a(volts, source_ohm, now_c);
-            let volts = volts - amps * source_ohm;
-            Reading { volts, amps }
-        };
-        let at_current = |amps: f64| Reading {
-            volts: truth.input_v(amps, now_c),
-            amps,
-        };
-        match self.sources.at_input() {
-            Drive::Voltage {
-                volts,
-                limit_a,
-                source_ohm,
-            } => {
-                let free = at_voltage(volts, source_ohm);
-                match free.amps.abs() > limit_a {
-                    true => at_current(limit_a.copysign(free.amps)),
-                    false => free,
-                }
-            }
-            Drive::Current { amps, limit_v } => {
-                let free = at_current(amps);
-                match free.volts.abs() > limit_v {
-                    true => at_voltage(limit_v.copysign(amps), 0.0),
-                    false => free,
-                }
-            }
-            Drive::Open | Drive::Sine { .. } | Drive::Pulses(_) => Reading::default(),
-        }
+        self.truth
+            .at_input(self.sources.at_input(), self.temperature_c())
     }
 
     /// Moves the light towards the input current; the exponential is exact for a constant input.
     fn shine(&mut self, dt_s: f64) {
-        let threshold_a =
-            self.truth.threshold_a * (1.0 + 5e-3 * (self.temperature_c() - REFERENCE_C));
+        let threshold_a = self.truth.threshold_at(self.temperature_c());
         let goal = self.at_input().amps.max(0.0) / threshold_a;
-        let tau_s = if goal > self.light {
-            self.truth.on_tau_s
-        } else {
-            self.truth.off_tau_s
-        };
-        self.light = goal + (self.light - goal) * (-dt_s / tau_s).exp();
-        self.lit = self.light >= if self.lit { self.truth.hysteresis } else { 1.0 };
+        self.light.advance(goal, &self.truth, dt_s);
     }
 
     fn warm(&mut self, dt_s: f64) {
         let output = self.at(Terminal::Output);
         let watts = output.volts * self.through(output);
-        let towards =
-            |from: f64, goal: f64, tau_s: f64| goal + (from - goal) * (-dt_s / tau_s).exp();
-        self.junction_k = towards(
-            self.junction_k,
-            watts * self.truth.junction_k_per_w,
-            JUNCTION_S,
-        );
-        self.case_k = towards(self.case_k, watts * CASE_K_PER_W, CASE_S);
+        self.heat.advance(watts, self.truth.junction_k_per_w, dt_s);
     }
 
     fn through(&self, output: Reading) -> f64 {
@@ -147,13 +97,7 @@ impl SolidState {
     }
 
     fn slope_ohm(&self) -> f64 {
-        let kelvin = self.temperature_c() - REFERENCE_C;
-        match self.truth.kind {
-            Kind::Dc => self.truth.on_ohm * ((298.15 + kelvin) / 298.15).powf(1.9),
-            Kind::Passive | Kind::AcZeroCross | Kind::AcRandom => {
-                self.truth.on_ohm * (1.0 + 3e-3 * kelvin)
-            }
-        }
+        self.truth.slope_ohm(self.temperature_c())
     }
 
     /// Returns the current of the blocked output at a voltage with its slope, amperes.
@@ -192,7 +136,7 @@ impl SolidState {
             if self.load_a * self.conducts < self.truth.holding_a {
                 self.again = true;
                 self.conducts = 0.0;
-                let fails = !self.lit && self.fails_to_commutate(line_v);
+                let fails = !self.light.is_lit() && self.fails_to_commutate(line_v);
                 self.refire = if fails { line_v.signum() } else { 0.0 };
             }
         }
@@ -214,7 +158,7 @@ impl SolidState {
 
     fn fire(&mut self, line_v: f64, ohms: f64) {
         let sign = line_v.signum();
-        if !self.lit && self.refire != sign {
+        if !self.light.is_lit() && self.refire != sign {
             (self.again, self.refire) = (false, 0.0);
             return;
         }
@@ -256,7 +200,7 @@ impl SolidState {
         if self.truth.shorted {
             return over_resistor(source, SHORT_OHM);
         }
-        if self.lit && !self.is_ac() {
+        if self.light.is_lit() && !self.is_ac() {
             return over_resistor(source, self.slope_ohm());
         }
         match source {
@@ -307,7 +251,7 @@ impl Circuit for SolidState {
         let line_v = self.sources.line.volts(0.0);
         match terminal {
             Terminal::Input | Terminal::Pulse => self.at_input(),
-            Terminal::Output if self.has_line() => {
+            Terminal::Output | Terminal::Socket if self.has_line() => {
                 let volts = match (self.truth.shorted, self.conducts) {
                     (true, _) => SHORT_OHM * amps,
                     (false, 0.0) => line_v - amps * self.load_ohm,
@@ -315,7 +259,7 @@ impl Circuit for SolidState {
                 };
                 Reading { volts, amps }
             }
-            Terminal::Output => self.without_line(),
+            Terminal::Output | Terminal::Socket => self.without_line(),
             Terminal::Clamped => {
                 let output = self.at(Terminal::Output);
                 Reading {

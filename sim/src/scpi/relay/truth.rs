@@ -280,6 +280,22 @@ impl Truth {
         self.forward_v - 1.8e-3 * (temperature_c - REFERENCE_C)
     }
 
+    /// Returns the input current at which the output turns on, amperes.
+    pub fn threshold_at(&self, celsius: f64) -> f64 {
+        self.threshold_a * (1.0 + 5e-3 * (celsius - REFERENCE_C))
+    }
+
+    /// Returns the on-state resistance of MOSFETs, or the slope resistance of a triac, ohms.
+    pub fn slope_ohm(&self, celsius: f64) -> f64 {
+        let kelvin = celsius - REFERENCE_C;
+        match self.kind {
+            Kind::Dc => self.on_ohm * ((298.15 + kelvin) / 298.15).powf(1.9),
+            Kind::Passive | Kind::AcZeroCross | Kind::AcRandom => {
+                self.on_ohm * (1.0 + 3e-3 * kelvin)
+            }
+        }
+    }
+
     /// Returns the voltage at and above which the output turns on at 25 degrees, volts.
     pub fn v_on(&self) -> f64 {
         self.input_v(self.threshold_a, REFERENCE_C)

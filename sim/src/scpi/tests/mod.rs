@@ -4,7 +4,7 @@
 mod instruments;
 mod relays;
 
-use super::bench::{Bench, SharedBench};
+use super::bench::{Bench, Desk, Instruments, SharedBench};
 use super::file::build_text;
 use super::message::{Framer, block, nr3, units};
 use super::port::Out;
@@ -15,12 +15,15 @@ impl Bench {
     /// Sends one message to an instrument and returns its reply.
     fn ask(&mut self, device: usize, message: &str) -> Option<String> {
         let at_us = self.now_us;
-        self.devices[device].receive(message.as_bytes(), at_us, &mut self.faults);
-        while self.devices[device].is_busy() {
-            let next_us = self.devices[device].next_us()?;
+        let Instruments {
+            devices, faults, ..
+        } = &mut self.instruments;
+        devices[device].receive(message.as_bytes(), at_us, faults);
+        while self.instruments.devices[device].is_busy() {
+            let next_us = self.instruments.devices[device].next_us()?;
             self.advance(next_us);
         }
-        let (at_us, bytes) = self.devices[device].outbox.pop_front()?;
+        let (at_us, bytes) = self.instruments.devices[device].outbox.pop_front()?;
         self.advance(at_us);
         Some(String::from_utf8_lossy(&bytes).trim_end().to_owned())
     }

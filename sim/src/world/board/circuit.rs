@@ -20,6 +20,7 @@ impl Board {
             Quantity::SupplyVoltage => self.supply.volts(),
             Quantity::ReferenceVoltage => self.reference_v,
             Quantity::ContactDrop => self.contact_v(part),
+            Quantity::ResidualVoltage => f64::NAN,
         }
     }
 

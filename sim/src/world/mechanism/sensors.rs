@@ -51,6 +51,9 @@ impl Mechanism {
             | In::BeamVoltage
             | In::BeamTime
             | In::BeamContact
+            | In::BeamInput
+            | In::BeamOutput
+            | In::BeamLeakage
             | In::BeamRetest => Some(self.dark.contains(&signal)),
             _ => None,
         }

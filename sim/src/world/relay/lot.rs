@@ -7,12 +7,12 @@ use crate::config::ConfigError;
 use crate::table::Table;
 use crate::world::WorldOptions;
 use crate::world::specimen::Arrival;
-use crate::world::table::WorldTable;
+use crate::world::table::RelayWorld;
 
 /// Relays of one recipe.
 #[derive(Debug, Clone)]
 pub struct Lot {
-    world: WorldTable,
+    world: RelayWorld,
     scale: Scale,
     certificates: Vec<Certificate>,
 }
@@ -25,7 +25,7 @@ impl Lot {
     pub fn read(
         recipe: &Table,
         options: &WorldOptions,
-        world: &WorldTable,
+        world: &RelayWorld,
     ) -> Result<Self, ConfigError> {
         let scale: Scale = recipe.get("part")?;
         let certificates = match options.reference_parts {

@@ -26,7 +26,7 @@ use std::collections::VecDeque;
 use super::draw::Draw;
 use super::probes::{Change, Contact, Supply};
 use super::specimen::REFERENCE_C;
-use super::table::WorldTable;
+use super::table::RelayWorld;
 use defect::Defect;
 pub use lot::Lot;
 use lumped::{Drive, Model};
@@ -71,7 +71,7 @@ impl Relay {
     /// Creates a relay from its true values at an instant; `draw` is the random stream of its operations.
     pub fn new(
         mut drawn: RelayValues,
-        world: &WorldTable,
+        world: &RelayWorld,
         mut draw: Draw,
         t_us: f64,
         track_c: f64,

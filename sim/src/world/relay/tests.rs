@@ -14,21 +14,24 @@ use crate::world::draw::Subject;
 use crate::world::tests::files;
 
 /// Returns the default world without scatter.
-fn still_world() -> WorldTable {
-    let mut world = read_world(&files(), None).unwrap();
+fn still_world() -> RelayWorld {
+    let mut world = read_world(&files(), None)
+        .unwrap()
+        .relays(&files())
+        .unwrap();
     world.lot.threshold_scatter_sd_mv = 0.0;
     world.lot.bounce_ln_sd = 0.0;
     world
 }
 
 /// Removes the heating of the copper, which moves pickup by 1.7 mV on a ramp of half a second.
-fn cool(mut world: WorldTable) -> WorldTable {
+fn cool(mut world: RelayWorld) -> RelayWorld {
     world.relay.coil_heat_j_per_k = 1e9;
     world
 }
 
 /// Creates the relay of the reference figures: pickup 7.8835 V, release 2.3429 V.
-fn reference_relay(world: &WorldTable) -> Relay {
+fn reference_relay(world: &RelayWorld) -> Relay {
     let scale = Scale {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,

@@ -7,7 +7,7 @@ use super::table::LotTable;
 use crate::world::defect;
 use crate::world::draw::{Draw, Subject};
 use crate::world::probes::Pins;
-use crate::world::table::WorldTable;
+use crate::world::table::RelayWorld;
 
 /// Resistance of one contact, milliohm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +89,7 @@ pub struct Scale {
 
 impl RelayValues {
     /// Draws the part at an index of the lot.
-    pub fn of_lot(world: &WorldTable, scale: Scale, seed: u64, index: u64) -> Self {
+    pub fn of_lot(world: &RelayWorld, scale: Scale, seed: u64, index: u64) -> Self {
         let mut draw = Draw::new(seed, Subject::LotPart, index);
         let mut part = Self::good(world, scale, &mut draw);
         part.index = index;
@@ -102,7 +102,7 @@ impl RelayValues {
 
     /// Draws a reference part: certified values within their uncertainty, all other values typical.
     pub fn of_certificate(
-        world: &WorldTable,
+        world: &RelayWorld,
         scale: Scale,
         seed: u64,
         index: u64,
@@ -118,7 +118,7 @@ impl RelayValues {
         part
     }
 
-    fn good(world: &WorldTable, scale: Scale, draw: &mut Draw) -> Self {
+    fn good(world: &RelayWorld, scale: Scale, draw: &mut Draw) -> Self {
         let lot = &world.lot;
         let volt_scale = scale.nominal_v / lot.nominal_v;
         let ohm_scale = scale.nominal_coil_ohm / lot.nominal_coil_ohm;
@@ -156,7 +156,7 @@ impl RelayValues {
         }
     }
 
-    fn apply_defect(&mut self, defect: Defect, world: &WorldTable, draw: &mut Draw) {
+    fn apply_defect(&mut self, defect: Defect, world: &RelayWorld, draw: &mut Draw) {
         let table = &world.defects;
         let volts = |draw: &mut Draw, ends, scale: f64| scale * draw.between(ends);
         match defect {
@@ -220,12 +220,12 @@ impl RelayValues {
         self.pins = Pins::MISORIENTED;
     }
 
-    fn nominal_ohm(&self, world: &WorldTable) -> f64 {
+    fn nominal_ohm(&self, world: &RelayWorld) -> f64 {
         self.ohm_scale * world.lot.nominal_coil_ohm
     }
 
     /// Changes the winding at constant power: volts scale with the root of the ohms.
-    fn change_winding(&mut self, factor: f64, world: &WorldTable) {
+    fn change_winding(&mut self, factor: f64, world: &RelayWorld) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
         self.turns *= factor.sqrt();
         self.time_origin = TimeOrigin::Follows;
@@ -241,7 +241,7 @@ impl RelayValues {
     }
 
     /// Returns the results that a relay with these values shows; an open coil counts as intact.
-    pub fn fit_target(&self, world: &WorldTable) -> FitTarget {
+    pub fn fit_target(&self, world: &RelayWorld) -> FitTarget {
         let wound = self.nominal_ohm(world);
         FitTarget {
             coil_ohm: if self.coil_ohm.is_finite() {

@@ -1,11 +1,12 @@
 //! A lot of resistor dummies.
 
 use super::{Defect, Resistor, ResistorTable};
+use crate::config::{ConfigError, Files};
 use crate::world::defect;
 use crate::world::draw::{Draw, Subject};
 use crate::world::probes::Pins;
 use crate::world::specimen::Arrival;
-use crate::world::table::WorldTable;
+use crate::world::table::{WorldTable, present};
 
 /// Least resistance of a dummy, ohm; the board divides by it.
 const LEAST_OHM: f64 = 1e-3;
@@ -19,11 +20,14 @@ pub struct Lot {
 
 impl Lot {
     /// Creates the lot of a world.
-    pub fn new(world: &WorldTable) -> Self {
-        Self {
-            table: world.resistor.clone(),
+    ///
+    /// # Errors
+    /// Fails when the world has no table of dummies.
+    pub fn new(world: &WorldTable, files: &Files) -> Result<Self, ConfigError> {
+        Ok(Self {
+            table: present(&world.resistor, "resistor", files)?,
             part_minus_track_sd_k: world.environment.part_minus_track_sd_k,
-        }
+        })
     }
 
     /// Returns the lot part at an index under a seed.

@@ -21,7 +21,7 @@ fn arrival(track_c: f64) -> Arrival {
 }
 
 fn lot() -> Lot {
-    Lot::new(&read_world(&files(), None).unwrap())
+    Lot::new(&read_world(&files(), None).unwrap(), &files()).unwrap()
 }
 
 /// Returns the first part with this defect, or the first without one.

@@ -60,7 +60,7 @@ impl Hand {
 
     pub(super) fn wait(&mut self, ms: f64) {
         self.t_us += (ms * 1000.0) as u64;
-        self.world.advance(self.t_us);
+        Plant::advance(&mut self.world, self.t_us);
     }
 
     pub(super) fn pulse(&mut self, point: &str, ms: f64) {

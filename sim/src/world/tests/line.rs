@@ -198,8 +198,9 @@ fn an_unknown_world_key_names_file_and_line() {
         ),
         "{error}"
     );
-    assert_eq!(world.lot.operate_v_mean, 7.7);
-    assert_eq!(world.lot.release_v_mean, 2.35);
+    let lot = world.lot.unwrap();
+    assert_eq!(lot.operate_v_mean, 7.7);
+    assert_eq!(lot.release_v_mean, 2.35);
 }
 
 #[test]

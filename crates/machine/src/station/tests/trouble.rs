@@ -55,9 +55,16 @@ fn every_alarm() -> Vec<Alarm> {
         .with_inner("transaction", &foreign)
         .with("used", 1)
         .with("tries", 3);
+    let failure = Message::new("instrument", "disconnected").with("said", "closed");
+    let query = Message::new("detail", "query_failed")
+        .with("instrument", "smu_in")
+        .with("program", "ramp")
+        .with_inner("failure", &failure);
     let few = Message::new("fault", "too_few").with("measured", 2);
     let others = [
         Alarm::bus(&tried),
+        Alarm::instrument("smu_in", &query),
+        Alarm::instrument_not_safe("smu_in"),
         Alarm::history_lost("relayrig.db", "history_locked", "recording: locked"),
         Alarm::stale(DigitalIn::AirOk),
         Alarm::serial_reader_lost("gone"),
@@ -127,6 +134,7 @@ fn every_alarm_has_both_texts_with_its_arguments() {
         let of_inner = [
             ("fault", "fault"),
             ("detail", "detail"),
+            ("failure", "instrument"),
             ("missed", "detail"),
             ("reason", "reason"),
             ("transaction", "transaction"),

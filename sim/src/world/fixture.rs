@@ -1,0 +1,173 @@
+//! The interface board of the rig, of whatever kind: what modules and instruments reach.
+//!
+//! This file lists the kinds, one variant for each; the kind of the parts in the magazine chooses.
+
+use super::board::Board;
+use super::board::supply::{CoilSupply, SupplyRange};
+use super::draw::Draw;
+use super::signal::{Commands, In, Quantity, Source};
+use super::specimen::Specimen;
+use super::ssr_board::SsrBoard;
+use super::table::{WorldTable, present};
+use super::wiring::Wiring;
+use crate::config::{ConfigError, Files, RigFile};
+use crate::scpi::circuit::{Drive, Reading, Terminal};
+use crate::truth::Overdrive;
+
+/// An interface board.
+#[derive(Debug, Clone)]
+pub enum Fixture {
+    /// For relays with coil and contacts, and for dummies in their body.
+    Relay(Box<Board>),
+    /// For solid-state relays.
+    Ssr(Box<SsrBoard>),
+}
+
+impl Fixture {
+    /// Creates the board for the recipe in the magazine, with drawn errors.
+    ///
+    /// # Errors
+    /// Fails when the recipe cannot be read, or the world has no table of this board.
+    pub fn new(
+        (files, recipe): (&Files, &str),
+        rig: &RigFile,
+        table: &WorldTable,
+        wiring: &Wiring,
+        draw: &mut Draw,
+    ) -> Result<Self, ConfigError> {
+        let kind: Option<String> = files.recipe(recipe)?.get("kind")?;
+        if kind.as_deref() == Some("ssr") {
+            let table = present(&table.fixture, "fixture", files)?;
+            return Ok(Self::Ssr(Box::new(SsrBoard::new(&table, draw))));
+        }
+        let table = present(&table.board, "board", files)?;
+        let supply = CoilSupply::new(&table, wiring, rig.supply_ranges.clone());
+        let board = Board::new(&table, &rig.reference, supply, draw);
+        Ok(Self::Relay(Box::new(board)))
+    }
+
+    /// Advances board and part to `t_us`.
+    pub fn advance(&mut self, t_us: f64, part: Option<&mut Specimen>) {
+        match self {
+            Self::Relay(board) => board.advance(t_us, part),
+            Self::Ssr(board) => board.advance(t_us, part),
+        }
+    }
+
+    /// Sets the state of the probes (block up, in contact with a part) and of the door.
+    pub fn probe(
+        &mut self,
+        (up, touch, door_closed): (bool, bool, bool),
+        part: Option<&mut Specimen>,
+    ) {
+        match self {
+            Self::Relay(board) => board.probe(up, touch, part),
+            Self::Ssr(board) => board.probe(up, touch, door_closed),
+        }
+    }
+
+    /// Applies all commands of the controller.
+    pub fn command(&mut self, commands: Commands, part: Option<&mut Specimen>) {
+        match self {
+            Self::Relay(board) => board.command(commands, part),
+            Self::Ssr(board) => board.command(commands),
+        }
+    }
+
+    /// Checks whether the interlock lets the jaws open.
+    pub fn frees_jaws(&self) -> bool {
+        match self {
+            Self::Relay(_) => true,
+            Self::Ssr(board) => board.frees_jaws(),
+        }
+    }
+
+    /// Returns the instant at which the interlock of the jaws looks next, microseconds; `None` while it holds nothing.
+    pub fn next_us(&self) -> Option<u64> {
+        match self {
+            Self::Relay(_) => None,
+            Self::Ssr(board) => board.next_us().map(|at_us| at_us.ceil() as u64),
+        }
+    }
+
+    /// Returns a digital signal of the board; `None` for a signal of another source.
+    pub fn signal(&self, signal: In, part: Option<&Specimen>) -> Option<bool> {
+        match self {
+            Self::Relay(board) => board.signal(signal, part),
+            Self::Ssr(board) => board.signal(signal, part),
+        }
+    }
+
+    /// Returns the volts that a quantity puts on the terminal of an analog input with this gain.
+    pub fn analog_v(&self, quantity: Quantity, gain: f64, part: Option<&Specimen>) -> f64 {
+        match (self, quantity) {
+            (Self::Relay(board), _) => board.clip(board.quantity(quantity, part) * gain),
+            (Self::Ssr(board), Quantity::ResidualVoltage) => board.clip(board.residual_v() * gain),
+            (Self::Ssr(_), _) => f64::NAN,
+        }
+    }
+
+    /// Sets the terminal of a source of the coil supply to `volts`.
+    pub fn supply(&mut self, source: Source, volts: f64, part: Option<&mut Specimen>) {
+        match self {
+            Self::Relay(board) => board.supply(source, volts, part),
+            Self::Ssr(_) => {}
+        }
+    }
+
+    /// Returns the total open time of a gate, microseconds.
+    pub fn gate_open_us(&self, gate: usize) -> f64 {
+        match self {
+            Self::Relay(board) => board.gate_open_us(gate),
+            Self::Ssr(_) => 0.0,
+        }
+    }
+
+    /// Shifts the ratio of the coil voltage divider by `per_mille` parts per thousand.
+    pub fn drift(&mut self, per_mille: f64) {
+        match self {
+            Self::Relay(board) => board.drift(per_mille),
+            Self::Ssr(_) => {}
+        }
+    }
+
+    /// Makes each further touch add this film to both probes of the input together.
+    pub fn add_film_per_touch(&mut self, per_touch_ohm: f64) {
+        match self {
+            Self::Relay(board) => board.add_film_per_touch(per_touch_ohm),
+            Self::Ssr(board) => board.add_film_per_touch(per_touch_ohm),
+        }
+    }
+
+    /// Makes the range relays of the coil supply stick in a range.
+    pub fn stick(&mut self, range: SupplyRange) {
+        match self {
+            Self::Relay(board) => board.stick(range),
+            Self::Ssr(_) => {}
+        }
+    }
+
+    /// Returns every overdrive of a coil so far, in order of time.
+    pub fn overdrives(&self) -> &[Overdrive] {
+        match self {
+            Self::Relay(board) => board.overdrives(),
+            Self::Ssr(_) => &[],
+        }
+    }
+
+    /// Connects a source of an instrument from the present instant on.
+    pub fn drive(&mut self, terminal: Terminal, drive: Drive) {
+        match self {
+            Self::Relay(_) => {}
+            Self::Ssr(board) => board.drive(terminal, drive),
+        }
+    }
+
+    /// Returns what an instrument finds at its terminals.
+    pub fn at(&self, terminal: Terminal, part: Option<&Specimen>) -> Reading {
+        match self {
+            Self::Relay(_) => Reading::default(),
+            Self::Ssr(board) => board.at(terminal, part),
+        }
+    }
+}

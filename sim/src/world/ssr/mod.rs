@@ -1,0 +1,136 @@
+//! A solid-state relay with a DC output in the nest: light on its driver, heat of its junction.
+//!
+//! The board solves the circuit and tells the part its input current and its power; between two events both count as
+//! constant. The electrical model is that of the instruments' bench (`scpi/relay`).
+
+mod defect;
+mod lot;
+pub mod table;
+mod truth;
+mod values;
+
+use super::probes::{Change, Pins, Supply};
+use super::specimen::ProbeInterface;
+use crate::scpi::circuit::{Drive, Reading};
+use crate::scpi::relay::{Heat, Light};
+use crate::truth::PartTruth;
+pub use defect::Defect;
+pub use lot::Lot;
+pub use truth::SsrTruth;
+pub use values::{Rated, Values};
+
+/// A part with its state.
+#[derive(Debug, Clone)]
+pub struct Ssr {
+    values: Values,
+    defect: Option<Defect>,
+    light: Light,
+    heat: Heat,
+    now_us: f64,
+}
+
+impl Ssr {
+    /// Creates a cold, dark part at an instant, microseconds.
+    pub fn new(values: Values, defect: Option<Defect>, now_us: f64) -> Self {
+        Self {
+            values,
+            defect,
+            light: Light::default(),
+            heat: Heat::default(),
+            now_us,
+        }
+    }
+
+    /// Returns the temperature of the junction, degrees Celsius.
+    fn celsius(&self) -> f64 {
+        self.values.celsius + self.heat.kelvin()
+    }
+
+    /// Returns voltage and current of the input at a source.
+    pub fn input(&self, drive: Drive) -> Reading {
+        self.values.model.at_input(drive, self.celsius())
+    }
+
+    /// Returns the light of an input current, over the threshold.
+    pub fn goal(&self, input_a: f64) -> f64 {
+        input_a.max(0.0) / self.values.model.threshold_at(self.celsius())
+    }
+
+    /// Returns the time after which the output switches at a light, microseconds; `None` for never.
+    pub fn switch_us(&self, goal: f64) -> Option<f64> {
+        let after_s = self.light.switch_s(goal, &self.values.model)?;
+        Some(after_s * 1e6)
+    }
+
+    /// Checks whether the light lets the output conduct.
+    pub fn is_lit(&self) -> bool {
+        self.light.is_lit()
+    }
+
+    /// Switches the output at the end of the time that [`Ssr::switch_us`] has given.
+    pub fn switch(&mut self, on: bool) {
+        self.light.switch(on, &self.values.model);
+    }
+
+    /// Returns the present conductance of the output, siemens.
+    pub fn siemens(&self) -> f64 {
+        match self.values.model.shorted || self.light.is_lit() {
+            true => 1.0 / self.values.on_ohm(self.celsius()),
+            false => self.values.blocked_siemens(self.celsius()),
+        }
+    }
+
+    /// Returns the capacitance over the output, farads.
+    pub fn farads(&self) -> f64 {
+        self.values.model.capacitance_f
+    }
+
+    /// Advances by `dt_us` at a constant light goal and power, watts.
+    pub fn pass(&mut self, dt_us: f64, goal: f64, watts: f64) {
+        let dt_s = dt_us * 1e-6;
+        self.light.advance(goal, &self.values.model, dt_s);
+        let k_per_w = self.values.model.junction_k_per_w;
+        self.heat.advance(watts, k_per_w, dt_s);
+        self.now_us += dt_us;
+    }
+
+    /// Returns the true figures.
+    pub fn figures(&self) -> SsrTruth {
+        SsrTruth::new(&self.values, self.defect)
+    }
+}
+
+impl ProbeInterface for Ssr {
+    fn pins(&self) -> Pins {
+        self.values.pins
+    }
+
+    fn input_ohm(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    fn input_a(&self) -> f64 {
+        0.0
+    }
+
+    /// The coil supply of a board for other parts reaches no pin of this one.
+    fn drive(&mut self, _t_us: f64, _supply: Supply) {}
+
+    /// Advances without source.
+    fn advance(&mut self, t_us: f64) -> Option<Change> {
+        let dt_us = t_us - self.now_us;
+        if dt_us > 0.0 {
+            self.pass(dt_us, 0.0, 0.0);
+            self.now_us = t_us;
+        }
+        None
+    }
+
+    fn truth(&self) -> PartTruth {
+        PartTruth {
+            ssr: Some(self.figures()),
+            defect: self.defect.map(Defect::name),
+            ..PartTruth::default()
+        }
+    }
+}
