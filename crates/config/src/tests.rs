@@ -306,10 +306,11 @@ fn a_recipe_without_a_known_kind_is_refused_first() {
         ("kind = \"em_rely\"\ntitel = 1", "\"em_rely\""),
         ("kind = 1", "1"),
     ] {
-        let expected = format!("kind: found {found}, expected \"em_relay\" or \"resistor\"");
+        let expected =
+            format!("kind: found {found}, expected \"em_relay\", \"resistor\" or \"ssr\"");
         refused_recipe("kind = \"em_relay\"", to, "kind =", &expected);
     }
-    let expected = "kind: found nothing, expected \"em_relay\" or \"resistor\"";
+    let expected = "kind: found nothing, expected \"em_relay\", \"resistor\" or \"ssr\"";
     refused_recipe("kind = \"em_relay\"\n", "", "", expected);
 }
 

@@ -32,6 +32,20 @@ const KINDS: &[(&str, &[&str])] = &[
             "resistor_short",
         ],
     ),
+    (
+        "crates/machine/src/dut/ssr/",
+        &[
+            "v_on_v",
+            "v_off_v",
+            "i_leak",
+            "r_on_mohm",
+            "smu_in",
+            "smu_out",
+            "kelvin_out",
+            "output_safe",
+            "short_check",
+        ],
+    ),
 ];
 
 /// Exceptions: studies of a kind, released migrations, examples of command lines.

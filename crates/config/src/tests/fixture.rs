@@ -83,6 +83,9 @@ fn refused(rig: &Table) -> Vec<String> {
         .collect()
 }
 
+/// The rig for solid-state relays.
+const SSR_RIG: &str = include_str!("../../../../config/rigs/ssr/rig.toml");
+
 #[test]
 fn a_rig_without_coil_board_refuses_relay_recipes() {
     let refused = refused(&without_the_coil_board());
@@ -204,9 +207,10 @@ fn a_recipe_needs_only_the_points_it_reads() {
 }
 
 #[test]
-fn the_default_rig_wires_every_declared_point() {
-    let rig: Table = toml::from_str(RIG).unwrap();
-    for kind in FIXTURES {
+fn a_rig_of_each_fixture_wires_every_declared_point() {
+    let rigs = [RIG, SSR_RIG].map(|it| toml::from_str::<Table>(it).unwrap());
+    assert_eq!(rigs.len(), FIXTURES.len());
+    for (kind, rig) in FIXTURES.iter().zip(&rigs) {
         let outputs = kind.digital_out.iter().map(|it| ("digital_out", it.name));
         let analog = kind.analog_in.iter().map(|it| ("analog_in", it.name));
         let inputs = kind.digital_in.iter().map(|it| ("digital_in", *it));

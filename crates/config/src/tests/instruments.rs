@@ -86,7 +86,7 @@ fn a_program_gets_its_arguments() {
             .program("wave", &[])
             .unwrap_err()
             .to_string()
-            .contains("arm, force_trigger, state, waveform")
+            .contains("arm, capture, complete, force_trigger, state, waveform")
     );
 }
 

@@ -334,9 +334,9 @@ impl Bench {
                 vec![self.input_a(given("before_v"))]
             }
             (Device::SmuIn | Device::SmuOut, "off") => {
-                match device {
-                    Device::SmuIn => self.control(0.0),
-                    _ => self.source_v = 0.0,
+                match device == Device::SmuIn {
+                    true => self.control(0.0),
+                    false => self.source_v = 0.0,
                 }
                 Vec::new()
             }
@@ -395,10 +395,10 @@ impl Bench {
     }
 
     fn input_a(&self, volts: f64) -> f64 {
-        match volts {
-            0.0 => 0.0,
-            volts if volts < 0.0 => -self.part.reverse_a,
-            _ => self.part.input_a,
+        match volts == 0.0 {
+            true => 0.0,
+            false if volts < 0.0 => -self.part.reverse_a,
+            false => self.part.input_a,
         }
     }
 

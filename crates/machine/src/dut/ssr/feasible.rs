@@ -79,11 +79,16 @@ fn unserved(plan: &Plan, points: &Points, wiring: &Wiring) -> Vec<Fault> {
             let mut state = State::default();
             state.acts(*stage, plan, points)
         });
-        let queries = all.flat_map(|act| match act {
-            Act::Query(queries) => queries,
-            _ => Vec::new(),
+        let queries = all.filter_map(|act| {
+            if let Act::Query(it) = act {
+                Some(it)
+            } else {
+                None
+            }
         });
-        let mut own = queries.filter(|query| query.instrument == instrument);
+        let mut own = queries
+            .flatten()
+            .filter(|query| query.instrument == instrument);
         let refused = own.find_map(|it| profile.program(it.program, &it.arguments).err());
         if let Some(error) = refused {
             let expected = format!(

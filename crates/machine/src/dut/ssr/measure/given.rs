@@ -44,10 +44,10 @@ impl<'a> Given<'a> {
     /// # Errors
     /// Fails unless the program has delivered two numbers.
     pub fn settled(device: Device, numbers: &[f64]) -> Result<(f64, f64), NotDelivered> {
-        match numbers {
-            [first, last] => Ok((*last, last - first)),
-            _ => Err(NotDelivered(device)),
-        }
+        let [first, last] = numbers else {
+            return Err(NotDelivered(device));
+        };
+        Ok((*last, last - first))
     }
 
     /// Returns the only number of each program of an instrument, in order.

@@ -32,9 +32,9 @@ pub fn conclude(
     plan: &Plan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    let (of, range, finding) = match stage {
-        Stage::HotLeakage => (Parameter::LeakageHot, &plan.leakage_hot, Finding::LeaksHot),
-        _ => (Parameter::LeakageCold, &plan.leakage_cold, Finding::Leaks),
+    let (of, range, finding) = match stage == Stage::HotLeakage {
+        true => (Parameter::LeakageHot, &plan.leakage_hot, Finding::LeaksHot),
+        false => (Parameter::LeakageCold, &plan.leakage_cold, Finding::Leaks),
     };
     let [numbers] = given.numbers(Device::SmuOut)?;
     let (ampere, moved) = Given::settled(Device::SmuOut, numbers)?;

@@ -101,11 +101,11 @@ impl Test {
     fn abandon(&mut self, why: Message) {
         self.state.record.trouble(why);
         self.stages.clear();
-        match self.stage {
-            Stage::Discharge => {}
-            Stage::SourcesOff if self.state.is_discharged => {}
-            Stage::SourcesOff => self.stages.push_back(Stage::Discharge),
-            _ => self.stages.extend([Stage::Discharge, Stage::SourcesOff]),
+        let (ends, is_last) = (self.stage.ends(), self.stage == Stage::Discharge);
+        if !ends {
+            self.stages.extend([Stage::Discharge, Stage::SourcesOff]);
+        } else if !is_last && !self.state.is_discharged {
+            self.stages.push_back(Stage::Discharge);
         }
     }
 
@@ -114,7 +114,7 @@ impl Test {
         let readings = std::mem::take(&mut self.runner.readings);
         let (plan, points) = (&self.device.plan, &self.device.points);
         let next = self.state.conclude(self.stage, plan, points, &readings);
-        if matches!(self.stage, Stage::SourcesOff | Stage::Discharge) {
+        if self.stage.ends() {
             return;
         }
         if self.state.record.stopped() {
@@ -207,7 +207,15 @@ impl TestProcedure for Test {
         let is_measured = |of: &Parameter| match of {
             Parameter::TurnOnVoltage => plan.searches || plan.turn_on_v.is_some(),
             Parameter::TurnOffVoltage => plan.searches || plan.turn_off_v.is_some(),
-            _ => true,
+            Parameter::InputCurrent
+            | Parameter::ReverseCurrent
+            | Parameter::TurnOnTime
+            | Parameter::TurnOffTime
+            | Parameter::Drop
+            | Parameter::OnResistance
+            | Parameter::LeakageCold
+            | Parameter::LeakageHot
+            | Parameter::Drift => true,
         };
         let expected = Parameter::ALL.into_iter().filter(is_measured);
         let expected: Vec<Characteristic> = expected.map(Into::into).collect();

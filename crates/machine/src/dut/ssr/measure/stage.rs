@@ -111,6 +111,11 @@ impl Stage {
         }
     }
 
+    /// Returns true for the stages with which every test ends.
+    pub fn ends(self) -> bool {
+        matches!(self, Self::SourcesOff | Self::Discharge)
+    }
+
     /// Returns the characteristics that a repetition of the stage measures again.
     pub const fn measures(self) -> &'static [Parameter] {
         use Parameter::{
