@@ -148,7 +148,11 @@ impl Command {
             Self::Sim(args) if args.faults && !installed::has("sim.toml") => {
                 Some(Folder::built_in())
             }
-            Self::Instrument(_) if !installed::has("instruments") => Some(Folder::built_in()),
+            Self::Instrument(_)
+                if !installed::has("instruments") && !installed::has("rig.toml") =>
+            {
+                Some(Folder::built_in())
+            }
             _ => None,
         }
     }

@@ -5,12 +5,13 @@ mod monitor;
 mod scan;
 mod send;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use app::exit::Exit;
 use app::instrument::message;
 use bus::Pace;
 use bus::instrument::{Link, Opener};
-use config::{ConfigError, Folder, folder_of_profiles, load_instrument};
+use config::{Folder, Plant, folder_of_profiles, load_instrument};
+use machine::rig::instruments::InstrumentWiring;
 use scpi::{
     Failure, Flow, Framing, LinkAddress, LinkSettings, Profile, Reply, Terminator, Transport,
 };
@@ -25,8 +26,9 @@ use units::Span;
   relayrig instrument send --link tcp:192.168.1.20:5025 '*IDN?'
   relayrig instrument check --link gpib-tcp:192.168.1.30:1234:9 --profile ac-source-61500
   relayrig instrument monitor --link serial:/dev/ttyUSB0:9600 --query 'READ?'
+  relayrig instrument check --instrument smu_in
 
-A link is tcp:HOST:PORT, serial:PATH:BAUD, or one of them behind a Prologix-type GPIB adapter: gpib-tcp:HOST:PORT:ADDR, \
+--instrument names an instrument of rig.toml. A link is tcp:HOST:PORT, serial:PATH:BAUD, or one of them behind a Prologix-type GPIB adapter: gpib-tcp:HOST:PORT:ADDR, \
 gpib-serial:PATH:BAUD:ADDR.")]
 pub struct InstrumentArgs {
     #[command(subcommand)]
@@ -49,15 +51,69 @@ enum InstrumentCommand {
 #[derive(Debug, Clone, clap::Args)]
 struct LinkArgs {
     /// tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDR or gpib-serial:PATH:BAUD:ADDR
-    #[arg(long, value_name = "LINK")]
-    link: LinkAddress,
-    /// Longest wait for a reply, milliseconds; without it that of the profile, or 1000
+    #[arg(long, value_name = "LINK", required_unless_present = "instrument")]
+    link: Option<LinkAddress>,
+    /// Instrument of rig.toml, whose link and profile serve unless --link or --profile is given
+    #[arg(long, value_name = "NAME")]
+    instrument: Option<String>,
+    /// Milliseconds until a reply; without it those of the profile, or 1000
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=60_000))]
     timeout: Option<u64>,
 }
 
 impl LinkArgs {
-    /// Returns the time that this number of characters takes on a serial port, milliseconds; 0 on a network.
+    /// Returns where the instrument is, and its profile, if the arguments name one: `profile`, or that of rig.toml.
+    fn place(
+        &self,
+        folder: &Folder,
+        profile: Option<&String>,
+    ) -> anyhow::Result<(Place, Option<Profile>)> {
+        let wired = match &self.instrument {
+            Some(name) => Some(wired(folder, name)?),
+            None => None,
+        };
+        let link = self.link.clone();
+        let link = link.or_else(|| wired.as_ref().map(|it| it.link.clone()));
+        let place = Place {
+            link: link.context("--link: found nothing, expected a link")?,
+            timeout: self.timeout,
+        };
+        let profile = match profile {
+            Some(name) => Some(load_instrument(&folder_of_profiles(folder), name)?),
+            None => wired.map(|it| (*it.profile).clone()),
+        };
+        Ok((place, profile))
+    }
+}
+
+/// Returns the instrument of rig.toml with this name.
+fn wired(folder: &Folder, name: &str) -> anyhow::Result<InstrumentWiring> {
+    let wiring = Plant::load(folder)?.wiring;
+    let Some(found) = wiring.instrument_named(name) else {
+        let known: Vec<&str> = wiring
+            .instruments
+            .iter()
+            .map(|it| it.name.as_str())
+            .collect();
+        let known = match known[..] {
+            [] => "none, because rig.toml has no instruments".to_owned(),
+            _ => format!("one of {}", known.join(", ")),
+        };
+        bail!("--instrument: found {name:?}, expected {known}");
+    };
+    Ok(wiring.instrument(found).clone())
+}
+
+/// Where an instrument is.
+#[derive(Debug, Clone)]
+struct Place {
+    link: LinkAddress,
+    /// Milliseconds until a reply, in place of those of the profile.
+    timeout: Option<u64>,
+}
+
+impl Place {
+    /// Returns the time that characters take on a serial port, milliseconds; 0 on a network.
     fn wire_ms(&self, characters: usize) -> f64 {
         match self.link.transport {
             Transport::Tcp { .. } => 0.0,
@@ -97,29 +153,19 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
         .enable_all()
         .build();
     let runtime = runtime.context("starting the runtime")?;
-    let folder = profiles(folder)?;
+    folder.check_exists()?;
     let done = runtime.block_on(async {
         match &args.command {
-            InstrumentCommand::Scan(args) => scan::run(&folder, args).await,
-            InstrumentCommand::Send(args) => send::run(&folder, args).await,
-            InstrumentCommand::Monitor(args) => monitor::run(&folder, args).await,
-            InstrumentCommand::Check(args) => check::run(&folder, args).await,
+            InstrumentCommand::Scan(args) => scan::run(&folder_of_profiles(folder), args).await,
+            InstrumentCommand::Send(args) => send::run(folder, args).await,
+            InstrumentCommand::Monitor(args) => monitor::run(folder, args).await,
+            InstrumentCommand::Check(args) => check::run(folder, args).await,
         }
     });
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Returns the folder with the profiles: `folder` if it has any, otherwise the profiles inside the program.
-fn profiles(folder: &Folder) -> Result<Folder, ConfigError> {
-    folder.check_exists()?;
-    Ok(folder_of_profiles(folder))
-}
-
-fn profile(folder: &Folder, name: Option<&String>) -> Result<Option<Profile>, ConfigError> {
-    name.map(|name| load_instrument(folder, name)).transpose()
-}
-
-/// Returns the English text of a failure.
+/// Returns the sentence of a failure, in English.
 fn sentence(failure: &Failure) -> String {
     message(failure).say(Lang::En)
 }

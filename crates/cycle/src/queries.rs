@@ -143,12 +143,16 @@ impl Cycle {
     }
 
     /// Opens, identifies and sets up every instrument; notes an alarm for each that fails or is late. Returns true when
-    /// all are ready.
+    /// all are ready, and after an order to abort, because the station then ends the run before anything moves.
     pub(super) async fn prepare_instruments(&mut self) -> bool {
         self.instruments.prepare_all();
         let end = self.pace.now() + PREPARE_WITHIN;
-        while !self.instruments.is_quiet() && !self.links.abort.load(Ordering::Acquire) {
+        while !self.instruments.is_quiet() {
             let now = self.pace.now();
+            if self.links.abort.load(Ordering::Acquire) {
+                self.instruments.end_preparation();
+                return true;
+            }
             if now >= end {
                 self.note_late_instruments();
                 break;

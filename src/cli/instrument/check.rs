@@ -1,6 +1,6 @@
 //! `relayrig instrument check`: tries a profile on an instrument.
 
-use super::{LinkArgs, sentence, text};
+use super::{LinkArgs, Place, sentence, text};
 use crate::cli::output::{Fixed, latency_ms, listing, print};
 use anyhow::Context;
 use app::controls::Interrupts;
@@ -8,7 +8,7 @@ use app::exit::Exit;
 use app::instrument::message;
 use bus::instrument::Link;
 use bus::{Histogram, Pace};
-use config::{Folder, load_instrument};
+use config::Folder;
 use scpi::{Failure, Form, Profile, Program, Reply};
 use serde_json::json;
 
@@ -17,6 +17,7 @@ use serde_json::json;
 #[command(after_help = "Examples:
   relayrig instrument check --link tcp:192.168.1.20:5025 --profile smu-2450
   relayrig instrument check --link tcp:192.168.1.20:5025 --profile smu-2450 --run current_at_level,level_v=4
+  relayrig instrument check --instrument smu_in
   relayrig instrument check --link gpib-serial:/dev/ttyUSB0:115200:9 --profile ac-source-61500 --json
 
 The check sends the set-up of the profile, which may reset the instrument, then the programs of --run, and at the end the \
@@ -26,8 +27,8 @@ pub struct CheckArgs {
     #[command(flatten)]
     link: LinkArgs,
     /// Profile of the instrument, a file of config/instruments
-    #[arg(long, value_name = "NAME")]
-    profile: String,
+    #[arg(long, value_name = "NAME", required_unless_present = "instrument")]
+    profile: Option<String>,
     /// Program of the profile to run, with its arguments; may be given several times
     #[arg(long, value_name = "PROGRAM[,ARGUMENT=VALUE]...")]
     run: Vec<String>,
@@ -75,14 +76,15 @@ const COLUMNS: [Fixed<Row>; 3] = [
 ];
 
 pub(super) async fn run(folder: &Folder, args: &CheckArgs) -> anyhow::Result<Exit> {
-    let profile = load_instrument(folder, &args.profile)?;
-    let mut link = args.link.link(Some(&profile));
+    let (place, profile) = args.link.place(folder, args.profile.as_ref())?;
+    let profile = profile.context("--profile: found nothing, expected the name of a profile")?;
+    let mut link = place.link(Some(&profile));
     let programs = args.run.iter().map(|it| program(&profile, it));
     let programs = programs.collect::<anyhow::Result<Vec<_>>>()?;
     let mut interrupts = Interrupts::listen()?;
     let mut rows = Vec::new();
     let interrupted = tokio::select! {
-        () = check(&mut link, args, &profile, programs, &mut rows) => false,
+        () = check(&mut link, &place, &profile, programs, &mut rows) => false,
         () = interrupts.next() => true,
     };
     if link.session().identity().is_some() {
@@ -130,7 +132,7 @@ fn carried_out(steps: usize) -> String {
 /// Tries identity, set-up, latency and programs, a row each.
 async fn check(
     link: &mut Link,
-    args: &CheckArgs,
+    place: &Place,
     profile: &Profile,
     programs: Vec<(String, Program)>,
     rows: &mut Vec<Row>,
@@ -147,7 +149,7 @@ async fn check(
     if !is_set_up {
         return;
     }
-    rows.push(latency(link, args, profile).await);
+    rows.push(latency(link, place, profile).await);
     let names: Vec<&str> = profile.programs().collect();
     rows.push(Row::new("programs", Ok(names.join(", "))));
     for (name, program) in programs {
@@ -157,7 +159,7 @@ async fn check(
     }
 }
 
-async fn latency(link: &mut Link, args: &CheckArgs, profile: &Profile) -> Row {
+async fn latency(link: &mut Link, place: &Place, profile: &Profile) -> Row {
     let pace = Pace::real();
     let mut latencies = Histogram::default();
     for _ in 0..QUERIES {
@@ -169,7 +171,7 @@ async fn latency(link: &mut Link, args: &CheckArgs, profile: &Profile) -> Row {
     }
     let share = |share| latency_ms(&latencies, share).unwrap_or(0.0);
     let identity = link.session().identity().unwrap_or_default();
-    let usual = profile.latency_ms + args.link.wire_ms("*IDN?".len() + identity.len() + 2);
+    let usual = profile.latency_ms + place.wire_ms("*IDN?".len() + identity.len() + 2);
     let (p50, p99) = (share(0.5), share(0.99));
     let found = format!("p50 {p50:.2} ms, p99 {p99:.2} ms, usual {usual:.2} ms");
     Row {

@@ -1,6 +1,6 @@
 //! `relayrig instrument monitor`: repeats a query and shows its values or the traffic, or listens to a serial port.
 
-use super::{LinkArgs, profile, sentence, text};
+use super::{LinkArgs, sentence, text};
 use crate::cli::output::print;
 use anyhow::{Context, bail};
 use app::controls::Interrupts;
@@ -45,10 +45,10 @@ pub struct MonitorArgs {
 pub(super) async fn run(folder: &Folder, args: &MonitorArgs) -> anyhow::Result<Exit> {
     let seconds = Duration::from_secs(args.seconds.unwrap_or(u64::from(u32::MAX)));
     let mut interrupts = Interrupts::listen()?;
-    let profile = profile(folder, args.profile.as_ref())?;
-    let mut link = args.link.link(profile.as_ref());
+    let (place, profile) = args.link.place(folder, args.profile.as_ref())?;
+    let mut link = place.link(profile.as_ref());
     let watching = async {
-        match (&args.query, &args.link.link.transport) {
+        match (&args.query, &place.link.transport) {
             (Some(query), _) if !query.contains('?') => {
                 bail!("--query: found {query:?}, expected a query with ?")
             }

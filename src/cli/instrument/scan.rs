@@ -1,6 +1,6 @@
 //! `relayrig instrument scan`: asks links for the identity of their instrument.
 
-use super::{LinkArgs, sentence};
+use super::{Place, sentence};
 use crate::cli::output::{Fixed, latency_ms, listing, print};
 use anyhow::bail;
 use app::controls::Interrupts;
@@ -127,7 +127,7 @@ fn of_host(host: &str) -> impl Iterator<Item = LinkAddress> {
 }
 
 async fn identify(address: &LinkAddress, timeout: u64) -> Result<(Identity, Histogram), Failure> {
-    let args = LinkArgs {
+    let args = Place {
         link: address.clone(),
         timeout: Some(timeout),
     };

@@ -1,6 +1,6 @@
 //! `relayrig instrument send`: sends one command as typed, shows the reply and the error queue.
 
-use super::{LinkArgs, decimal, profile, sentence};
+use super::{LinkArgs, decimal, sentence};
 use crate::cli::output::print;
 use anyhow::bail;
 use app::exit::Exit;
@@ -46,8 +46,8 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
             args.command
         );
     }
-    let profile = profile(folder, args.profile.as_ref())?;
-    let mut link = args.link.link(profile.as_ref());
+    let (place, profile) = args.link.place(folder, args.profile.as_ref())?;
+    let mut link = place.link(profile.as_ref());
     let pace = Pace::real();
     if let Some(remote) = profile.and_then(|it| it.remote) {
         // If this fails, the command itself fails too and reports it.

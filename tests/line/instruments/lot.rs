@@ -60,3 +60,35 @@ fn the_link_of_an_instrument_is_replaced_as_a_port_is() {
     );
     said.with_status(2);
 }
+
+#[test]
+fn an_instrument_of_the_rig_is_checked_by_its_name() {
+    let workshop = with_meter("instruments_named", "");
+    let other = workshop.run("instrument check --instrument source");
+    assert!(other.stderr.contains("expected one of meter"), "{other}");
+    other.with_status(2);
+    workshop.change(
+        "config/rig.toml",
+        "tcp:192.168.10.11:5025",
+        "tcp:127.0.0.1:1",
+    );
+    let said = workshop.run("instrument check --instrument meter --json");
+    let rows = said.with_status(1).objects();
+    assert_eq!(rows[0]["failure"]["code"], "link_down", "{rows:?}");
+}
+
+#[test]
+fn the_doctor_looks_at_serial_ports_of_instruments() {
+    let workshop = with_meter("instruments_doctor", "");
+    workshop.change(
+        "config/rig.toml",
+        "tcp:192.168.10.11:5025",
+        "serial:/dev/none:9600",
+    );
+    let said = workshop.run("doctor --json");
+    let findings = said.objects();
+    let port = findings
+        .iter()
+        .find(|it| it["subject"] == "/dev/none of instrument meter");
+    assert_eq!(port.unwrap()["found"], "nothing", "{findings:?}");
+}

@@ -19,7 +19,7 @@ pub enum Check {
     People,
     /// Age of the newest backup.
     Backup,
-    /// Serial port of a line.
+    /// Serial port of a line or of an instrument.
     Port,
     /// Latency of a USB converter.
     Latency,

@@ -3,7 +3,9 @@
 use super::account::{Account, group, rights};
 use super::finding::{Check, Finding, Subject};
 use crate::source::LinePort;
+use machine::rig::instruments::InstrumentWiring;
 use machine::rig::wiring::Wiring;
+use scpi::{LinkAddress, Transport};
 use std::fs::{self, Metadata};
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
@@ -14,27 +16,36 @@ const UNSTABLE: [&str; 2] = ["/dev/ttyUSB", "/dev/ttyACM"];
 /// Latency timer of a USB converter that suits the protocol, ms.
 const LATENCY_MS: u32 = 1;
 
-/// A line with its port.
+/// A line or an instrument with its serial port.
 #[derive(Debug)]
 struct Wired {
-    line: String,
+    /// The word `line` or `instrument`, as in `rig.toml`.
+    kind: &'static str,
+    name: String,
+    /// Key of the port in `rig.toml`.
+    key: &'static str,
     port: PathBuf,
     /// Path of the port with all links resolved; `None` when the port is missing.
     device: Option<PathBuf>,
 }
 
-/// Checks the port of every line, and the latency timer of a USB converter; `given` replaces ports of the wiring.
+/// Checks the serial port of every line and instrument, and the latency timer of a USB converter; `given` replaces ports
+/// of the wiring.
 pub(crate) fn check(wiring: &Wiring, given: &[LinePort], account: &Account) -> Vec<Finding> {
     let wired = wiring.lines.iter().map(|line| {
         let other = given.iter().find(|it| it.line == line.name);
         let port = PathBuf::from(other.map_or(&line.port, |it| &it.port));
         Wired {
-            line: line.name.clone(),
+            kind: "line",
+            name: line.name.clone(),
+            key: "port",
             device: fs::canonicalize(&port).ok(),
             port,
         }
     });
-    let wired: Vec<Wired> = wired.collect();
+    let instruments = wiring.instruments.iter();
+    let instruments = instruments.filter_map(|it| instrument(it, given));
+    let wired: Vec<Wired> = wired.chain(instruments).collect();
     let mut findings = Vec::new();
     for (index, one) in wired.iter().enumerate() {
         let same = |other: &&Wired| other.device.is_some() && other.device == one.device;
@@ -46,29 +57,52 @@ pub(crate) fn check(wiring: &Wiring, given: &[LinePort], account: &Account) -> V
     findings
 }
 
+/// Returns the serial port of an instrument; `None` for one on the network.
+fn instrument(wired: &InstrumentWiring, given: &[LinePort]) -> Option<Wired> {
+    let other = given.iter().find(|it| it.line == wired.name);
+    let other = other.and_then(|it| it.port.parse::<LinkAddress>().ok());
+    let link = other.unwrap_or_else(|| wired.link.clone());
+    let Transport::Serial { path, .. } = link.transport else {
+        return None;
+    };
+    Some(Wired {
+        kind: "instrument",
+        name: wired.name.clone(),
+        key: "link",
+        device: fs::canonicalize(&path).ok(),
+        port: path.into(),
+    })
+}
+
 fn check_port(wired: &Wired, twin: Option<&Wired>, account: &Account) -> Finding {
-    let (line, port) = (&wired.line, wired.port.display());
+    let Wired {
+        kind, name, key, ..
+    } = wired;
+    let port = wired.port.display();
     let expected = format!("a serial port that {} may open", account.name);
-    let subject = Subject::new(Check::Port, format!("{port} of line {line}"), expected);
+    let subject = Subject::new(Check::Port, format!("{port} of {kind} {name}"), expected);
     let Some(meta) = wired.device.as_ref().and_then(|it| fs::metadata(it).ok()) else {
         let remedy = format!(
-            "plug the converter in, or correct `port` of [line.{line}] in rig.toml (ls -l /dev/serial/by-id)"
+            "plug the converter in, or correct `{key}` of [{kind}.{name}] in rig.toml (ls -l /dev/serial/by-id)"
         );
         return subject.fault("nothing", remedy);
     };
     if !meta.file_type().is_char_device() {
-        let remedy = format!("correct `port` of [line.{line}] in rig.toml");
+        let remedy = format!("correct `{key}` of [{kind}.{name}] in rig.toml");
         return subject.fault("no device", remedy);
     }
     if let Some(twin) = twin {
-        let remedy = "give each line its own converter";
-        return subject.fault(format!("the port of line {} too", twin.line), remedy);
+        let remedy = "give each line and each instrument its own converter";
+        return subject.fault(
+            format!("the port of {} {} too", twin.kind, twin.name),
+            remedy,
+        );
     }
     if !account.may_write(&meta) {
         return subject.fault(rights(&meta), open_up(&meta, account));
     }
-    let name = port.to_string();
-    match UNSTABLE.iter().any(|start| name.starts_with(start)) {
+    let path = port.to_string();
+    match UNSTABLE.iter().any(|start| path.starts_with(start)) {
         true => subject.warning(
             "a name that may change at the next start",
             "use a link of /dev/serial/by-id, or name the converter in /etc/udev/rules.d/70-relayrig.rules",

@@ -71,42 +71,4 @@ impl Delivered {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_all_replies_keep_their_order() {
-        let replies = [
-            Reply::Number(1.5),
-            Reply::Line("STOP".to_owned()),
-            Reply::Line("8".to_owned()),
-            Reply::Numbers(vec![2.0, 3.0]),
-        ];
-        let delivered = Delivered::of(Dialect::Scpi, &replies);
-        let numbers = vec![1.5, 8.0, 2.0, 3.0];
-        assert_eq!(delivered.map(|it| it.numbers), Ok(numbers));
-    }
-
-    #[test]
-    fn a_block_and_its_preamble_are_a_waveform() {
-        let preamble = vec![0.0, 2.0, 3.0, 1.0, 1e-6, -2e-6, 0.0, 0.5, 0.0, 128.0];
-        let replies = [Reply::Numbers(preamble), Reply::Block(vec![128, 130, 126])];
-        let Ok(delivered) = Delivered::of(Dialect::Rigol, &replies) else {
-            panic!("no waveform");
-        };
-        assert!(delivered.numbers.is_empty(), "the preamble is no value");
-        let waveform = delivered.waveform.map(|it| (*it).clone());
-        let expected = Waveform {
-            start_s: -2e-6,
-            step_s: 1e-6,
-            volts: vec![0.0, 1.0, -1.0],
-        };
-        assert_eq!(waveform, Some(expected));
-    }
-
-    #[test]
-    fn a_block_without_preamble_is_refused() {
-        let replies = [Reply::Block(vec![1, 2])];
-        assert!(Delivered::of(Dialect::Rigol, &replies).is_err());
-    }
-}
+mod tests;
