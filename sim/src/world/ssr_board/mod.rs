@@ -8,6 +8,7 @@ mod circuit;
 mod network;
 
 use super::draw::Draw;
+use super::fixture::Probes;
 use super::signal::{Commands, In, Out};
 use super::specimen::Specimen;
 use super::ssr::Ssr;
@@ -118,12 +119,14 @@ impl SsrBoard {
         }
     }
 
-    /// Sets the state of the probes (block up, in contact with a part) and of the door.
-    pub fn probe(&mut self, chain: bool, touching: bool, door_closed: bool) {
+    /// Sets the state of probes and door; the chain opens as soon as the block leaves its upper end.
+    pub fn probe(&mut self, probes: Probes) {
+        let touching = probes.touch && probes.stay;
         if touching && !self.touching {
             self.film_ohm += self.film_per_touch_ohm;
         }
-        (self.chain, self.touching, self.door_closed) = (chain, touching, door_closed);
+        (self.chain, self.touching) = (probes.stay, touching);
+        self.door_closed = probes.door_closed;
     }
 
     /// Makes each further touch add this film to both probes of the input together.
