@@ -18,7 +18,8 @@ use crate::table::Table;
 use crate::world::table::present;
 
 /// Form of a link.
-const FORM: &str = "tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDRESS or gpib-serial:PATH:BAUD:ADDRESS";
+const FORM: &str =
+    "tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDRESS or gpib-serial:PATH:BAUD:ADDRESS";
 
 /// A link of `rig.toml`.
 struct Place {
@@ -124,7 +125,12 @@ mod tests {
         let gpib = parsed("gpib-tcp:10.0.0.2:1234:9").unwrap();
         let expected = (Link::Tcp(0), Some(("10.0.0.2:1234".to_owned(), 9)));
         assert_eq!((gpib.link, gpib.gpib), expected);
-        for wrong in ["tcp:5025", "usb:1:2", "gpib-tcp:10.0.0.2:1234:31", "serial:/dev/x:0"] {
+        for wrong in [
+            "tcp:5025",
+            "usb:1:2",
+            "gpib-tcp:10.0.0.2:1234:31",
+            "serial:/dev/x:0",
+        ] {
             assert!(parsed(wrong).is_none(), "{wrong}");
         }
     }

@@ -121,7 +121,10 @@ async fn accept(bench: Arc<dyn Desk>, number: usize, listener: TcpListener, cloc
 
 /// Serves a terminal, whose hosts come and go unseen; a connection that a fault ends goes on at once.
 async fn keep(bench: Arc<dyn Desk>, number: usize, mut terminal: UnixStream, clock: Clock) {
-    while converse(&*bench, number, &mut terminal, clock).await.is_ok() {
+    while converse(&*bench, number, &mut terminal, clock)
+        .await
+        .is_ok()
+    {
         bench.close(number, clock.now_us());
     }
 }

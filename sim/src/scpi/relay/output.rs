@@ -79,8 +79,7 @@ impl SolidState {
     fn warm(&mut self, dt_s: f64) {
         let output = self.at(Terminal::Output);
         let watts = output.volts * self.through(output);
-        self.heat
-            .advance(watts, self.truth.junction_k_per_w, dt_s);
+        self.heat.advance(watts, self.truth.junction_k_per_w, dt_s);
     }
 
     fn through(&self, output: Reading) -> f64 {

@@ -15,7 +15,10 @@ use crate::world::tests::files;
 
 /// Returns the default world without scatter.
 fn still_world() -> RelayWorld {
-    let mut world = read_world(&files(), None).unwrap().relays(&files()).unwrap();
+    let mut world = read_world(&files(), None)
+        .unwrap()
+        .relays(&files())
+        .unwrap();
     world.lot.threshold_scatter_sd_mv = 0.0;
     world.lot.bounce_ln_sd = 0.0;
     world

@@ -55,7 +55,12 @@ impl Lot {
         let draw = &mut Draw::new(seed, Subject::LotPart, index);
         let offset_k = draw.normal(0.0, self.part_minus_track_sd_k);
         let mut values = self.good(arrival.track_c + offset_k, draw);
-        let mut found = of_part(defect::Defect::ALL, seed, index, self.table.defects.rate_pct);
+        let mut found = of_part(
+            defect::Defect::ALL,
+            seed,
+            index,
+            self.table.defects.rate_pct,
+        );
         if let Some(defect) = found {
             defect.damage(&mut values, &self.table.defects, draw);
         }

@@ -180,10 +180,7 @@ impl SsrBoard {
 
     /// Checks whether a contactor closes: the two exclude each other, and need probes and door.
     fn closes(&self, own: Out, other: Out) -> bool {
-        self.chain
-            && self.door_closed
-            && self.commands.is_on(own)
-            && !self.commands.is_on(other)
+        self.chain && self.door_closed && self.commands.is_on(own) && !self.commands.is_on(other)
     }
 
     /// Checks whether an output of the socket is on and allowed.

@@ -94,8 +94,7 @@ impl Network {
     fn reach_s(&self, volts: f64, point_v: f64, amps: f64) -> Option<f64> {
         let goal_v = amps / self.siemens;
         let ratio = (volts - goal_v) / (point_v - goal_v);
-        (ratio > 1.0 && ratio.is_finite())
-            .then(|| ratio.ln() * self.farads / self.siemens)
+        (ratio > 1.0 && ratio.is_finite()).then(|| ratio.ln() * self.farads / self.siemens)
     }
 }
 

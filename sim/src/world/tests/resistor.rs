@@ -103,7 +103,9 @@ fn an_unknown_kind_is_refused_with_file_and_line() {
     let folder = folder("capacitor");
     let error = World::build(&dummies(&folder)).unwrap_err().to_string();
     assert!(
-        error.contains("dummy.toml:2: kind: found \"capacitor\", expected em_relay, resistor or ssr"),
+        error.contains(
+            "dummy.toml:2: kind: found \"capacitor\", expected em_relay, resistor or ssr"
+        ),
         "{error}"
     );
 }

@@ -36,7 +36,9 @@ fn lot(seed: u64, parts: usize) -> Vec<Value> {
 
 fn outside(truth: &Value) -> Vec<&'static str> {
     let out = LIMITS.iter().filter(|(key, least, most)| {
-        truth[*key].as_f64().is_some_and(|it| it < *least || it > *most)
+        truth[*key]
+            .as_f64()
+            .is_some_and(|it| it < *least || it > *most)
     });
     out.map(|(key, ..)| *key).collect()
 }
@@ -48,7 +50,10 @@ fn each_defect_fails_the_limits_of_its_bin_alone() {
         for truth in lot(seed, 25) {
             let Some(defect) = truth["defect"].as_str() else {
                 assert_eq!(outside(&truth), Vec::<&str>::new(), "{truth}");
-                assert!(truth["drift_mv"].as_f64().expect("a drift") < 0.12, "{truth}");
+                assert!(
+                    truth["drift_mv"].as_f64().expect("a drift") < 0.12,
+                    "{truth}"
+                );
                 continue;
             };
             *seen.entry(defect.to_owned()).or_default() += 1;
@@ -137,7 +142,10 @@ fn slow_parts_switch_late_in_the_capture() {
             .find(|us| (at(edge + us) > level_v) == (key == "t_on_us"))
             .expect("a crossing");
         let true_us = hand.figure(key);
-        assert!((after_us as f64 / true_us - 1.0).abs() < 0.12, "{after_us} {true_us}");
+        assert!(
+            (after_us as f64 / true_us - 1.0).abs() < 0.12,
+            "{after_us} {true_us}"
+        );
     }
 }
 
@@ -156,7 +164,12 @@ fn a_hot_or_high_drop_shows_at_one_ampere() {
 
 #[test]
 fn missing_and_turned_pins_open_kelvin_bits() {
-    let points = ["kelvin_in_plus", "kelvin_in_minus", "kelvin_out_1", "kelvin_out_2"];
+    let points = [
+        "kelvin_in_plus",
+        "kelvin_in_minus",
+        "kelvin_out_1",
+        "kelvin_out_2",
+    ];
     for (defect, open) in [("missing_pin", 1), ("turned", 2), ("leaky_junction", 0)] {
         let mut hand = with(defect);
         hand.set("kelvin_test", true);

@@ -60,11 +60,17 @@ fn leakage_and_input_current_are_the_true_ones() {
     let mut hand = good();
     hand.control(5.0);
     let input_ma = hand.value("smu_in", ":READ?") * 1e3;
-    assert!((input_ma - hand.figure("i_in_ma")).abs() < 1e-4, "{input_ma}");
+    assert!(
+        (input_ma - hand.figure("i_in_ma")).abs() < 1e-4,
+        "{input_ma}"
+    );
     hand.control(-5.0);
     let reverse_ua = -hand.value("smu_in", ":READ?") * 1e6;
     let true_ua = hand.figure("i_rev_ua");
-    assert!((reverse_ua - true_ua).abs() < 1e-6, "{reverse_ua} {true_ua}");
+    assert!(
+        (reverse_ua - true_ua).abs() < 1e-6,
+        "{reverse_ua} {true_ua}"
+    );
     hand.control(0.0);
     hand.set("bleed_open", true);
     hand.source("smu_out", 60.0, 1e-3, 1e-4);
@@ -96,14 +102,23 @@ fn drop_and_drift_are_the_true_ones() {
     hand.tell("smu_out", ":SOUR:CURR 1;:SENS:VOLT:NPLC 0.01");
     // A sweep measures by itself, so that its instants do not depend on the link.
     let begin_us = hand.t_us;
-    hand.tell("smu_out", ":SENS:COUN 1000;:SENS:VOLT:RANG 0.2;:OUTP ON;:INIT");
+    hand.tell(
+        "smu_out",
+        ":SENS:COUN 1000;:SENS:VOLT:RANG 0.2;:OUTP ON;:INIT",
+    );
     hand.wait(300.0);
     let text = hand.ask("smu_out", ":TRAC:DATA? 1,1000,\"defbuffer1\",READ");
-    let volts: Vec<f64> = text.split(',').map(|it| it.parse().expect("volts")).collect();
+    let volts: Vec<f64> = text
+        .split(',')
+        .map(|it| it.parse().expect("volts"))
+        .collect();
     // Each reading takes 0.2 ms; the output comes on one or two milliseconds after the message.
     let drift_mv = (volts[990] - volts[48]) * 1e3;
     let true_mv = hand.figure("drift_mv");
-    assert!((drift_mv / true_mv - 1.0).abs() < 0.06, "{drift_mv} {true_mv} {begin_us}");
+    assert!(
+        (drift_mv / true_mv - 1.0).abs() < 0.06,
+        "{drift_mv} {true_mv} {begin_us}"
+    );
 }
 
 #[test]
@@ -121,7 +136,10 @@ fn a_capture_shows_the_true_times() {
     let (true_on, true_off) = (hand.figure("t_on_us"), hand.figure("t_off_us"));
     // 50 ohm in series with the pulse source take some of the input current.
     assert!((on as f64 / true_on - 1.07).abs() < 0.04, "{on} {true_on}");
-    assert!((off as f64 / true_off - 0.98).abs() < 0.03, "{off} {true_off}");
+    assert!(
+        (off as f64 / true_off - 0.98).abs() < 0.03,
+        "{off} {true_off}"
+    );
 }
 
 #[test]
@@ -167,8 +185,11 @@ fn without_a_part_every_terminal_is_open() {
 fn references_replace_the_output_of_the_part() {
     let mut hand = good();
     hand.set("bleed_open", true);
-    for (low, high, ohms) in [(true, false, f64::INFINITY), (false, true, 1e-3), (true, true, 1e3)]
-    {
+    for (low, high, ohms) in [
+        (true, false, f64::INFINITY),
+        (false, true, 1e-3),
+        (true, true, 1e3),
+    ] {
         hand.set("smu_to_output", false);
         hand.set("reference_0", low);
         hand.set("reference_1", high);
@@ -178,10 +199,16 @@ fn references_replace_the_output_of_the_part() {
         let amps = hand.value("smu_out", ":READ?");
         let expected = (0.5 / ohms).min(1e-2);
         // The resistor has an error of 0.1 %.
-        assert!((amps - expected).abs() <= 1.2e-3 * expected + 1e-9, "{ohms}: {amps}");
+        assert!(
+            (amps - expected).abs() <= 1.2e-3 * expected + 1e-9,
+            "{ohms}: {amps}"
+        );
     }
     hand.set("reference_0", false);
     hand.set("reference_1", false);
     let amps = hand.value("smu_out", ":READ?");
-    assert!((amps - 5e-4).abs() < 1e-6, "switched under the unit: {amps}");
+    assert!(
+        (amps - 5e-4).abs() < 1e-6,
+        "switched under the unit: {amps}"
+    );
 }

@@ -71,7 +71,11 @@ fn a_silent_host_leaves_the_output_safe() {
     assert!(hand.is_on("output_safe"));
     let volts = hand.residual_v();
     assert!(volts.abs() < 1.0, "{volts}");
-    assert_eq!(hand.ask("smu_out", ":OUTP?"), "1", "the unit itself stays on");
+    assert_eq!(
+        hand.ask("smu_out", ":OUTP?"),
+        "1",
+        "the unit itself stays on"
+    );
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use rigsim::scpi::bench::Desk;
 use rigsim::{SharedRig, SimError, wire};
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
 
@@ -35,7 +34,10 @@ fn plugs_and_lines_share_one_clock() {
         let mut reply = String::new();
         let mut reader = BufReader::new(&mut smu);
         reader.read_line(&mut reply).await.expect("a reply");
-        assert!(reply.starts_with("KEITHLEY INSTRUMENTS,MODEL 2450"), "{reply}");
+        assert!(
+            reply.starts_with("KEITHLEY INSTRUMENTS,MODEL 2450"),
+            "{reply}"
+        );
         let between_us = rig.now_us();
         assert!((5_001_000..5_010_000).contains(&between_us), "{between_us}");
         measure.write_all(b"$08MD9\r").await.expect("a stream");
@@ -102,15 +104,21 @@ fn one_seed_gives_equal_bytes_from_instruments_too() {
 }
 
 #[test]
-fn a_capture_costs_its_samples_only() {
-    let mut hand = Hand::of(&options(1, &[]));
-    hand.feed();
-    hand.load();
-    let begin = std::time::Instant::now();
-    hand.wait(60_000.0);
-    let idle = begin.elapsed();
-    let begin = std::time::Instant::now();
-    super::figures::capture(&mut hand);
-    eprintln!("a minute: {idle:?}, a capture: {:?}", begin.elapsed());
-    assert_eq!(hand.rig.ports().len(), 4);
+fn one_step_or_many_give_equal_readings() {
+    let readings = |steps: u32| {
+        let mut hand = Hand::in_world(1, super::figures::GOOD);
+        hand.feed();
+        hand.load();
+        hand.control(5.0);
+        for _ in 0..steps {
+            hand.wait(600.0 / f64::from(steps));
+        }
+        let warm_v = hand.value("smu_out", ":MEAS:VOLT?");
+        hand.control(0.0);
+        [warm_v, hand.value("smu_out", ":MEAS:CURR?")]
+    };
+    let (one, many) = (readings(1), readings(3_000));
+    for (one, many) in one.into_iter().zip(many) {
+        assert!((one - many).abs() <= 1e-6 * one.abs(), "{one} {many}");
+    }
 }

@@ -35,7 +35,10 @@ fn a_held_coil_warms_as_two_heat_stores_do() {
 
 #[test]
 fn a_released_relay_carries_full_coil_current_again() {
-    let world = read_world(&files(), None).unwrap().relays(&files()).unwrap();
+    let world = read_world(&files(), None)
+        .unwrap()
+        .relays(&files())
+        .unwrap();
     let scale = Scale {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,

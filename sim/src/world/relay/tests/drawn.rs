@@ -41,7 +41,10 @@ fn a_specimen_shows_its_drawn_thresholds_and_times() {
 
 #[test]
 fn the_lot_follows_the_table_and_contains_every_defect() {
-    let world = read_world(&files(), None).unwrap().relays(&files()).unwrap();
+    let world = read_world(&files(), None)
+        .unwrap()
+        .relays(&files())
+        .unwrap();
     let scale = Scale {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,
@@ -80,7 +83,10 @@ fn the_lot_follows_the_table_and_contains_every_defect() {
 
 #[test]
 fn a_seed_draws_the_recorded_relays() {
-    let world = read_world(&files(), None).unwrap().relays(&files()).unwrap();
+    let world = read_world(&files(), None)
+        .unwrap()
+        .relays(&files())
+        .unwrap();
     let drawn = |seed, index, nominal_v, nominal_coil_ohm| {
         let scale = Scale {
             nominal_v,
@@ -166,7 +172,10 @@ fn a_seed_draws_the_recorded_relays() {
 
 #[test]
 fn a_24_v_lot_has_twice_the_thresholds() {
-    let world = read_world(&files(), None).unwrap().relays(&files()).unwrap();
+    let world = read_world(&files(), None)
+        .unwrap()
+        .relays(&files())
+        .unwrap();
     let of_lot = |nominal_v, nominal_coil_ohm, index| {
         let scale = Scale {
             nominal_v,
