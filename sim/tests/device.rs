@@ -1,4 +1,4 @@
-//! Tests of modules and lines from the host's side.
+//! Tests of modules, lines and instruments from the host's side.
 
 mod facts {
     mod bench;
@@ -7,5 +7,6 @@ mod facts {
     mod fuzz;
     mod line;
     mod rig;
+    mod ssr;
     mod terminal;
 }

@@ -145,7 +145,7 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
 fn usual_recipe(files: &rigsim::Files) -> String {
     let usual = "jzc-22f-012".to_owned();
     let recipes = files.recipes();
-    match recipes.iter().any(|name| *name == usual) {
+    match recipes.contains(&usual) {
         true => usual,
         false => recipes.into_iter().next().unwrap_or(usual),
     }

@@ -14,6 +14,19 @@ use crate::config::{ConfigError, Files, RigFile};
 use crate::scpi::circuit::{Drive, Reading, Terminal};
 use crate::truth::Overdrive;
 
+/// State of pin block and door.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Probes {
+    /// The block is up.
+    pub up: bool,
+    /// The probes touch the pins of a clamped part.
+    pub touch: bool,
+    /// The block is up and not about to go down.
+    pub stay: bool,
+    /// The door is closed.
+    pub door_closed: bool,
+}
+
 /// An interface board.
 #[derive(Debug, Clone)]
 pub enum Fixture {
@@ -54,15 +67,11 @@ impl Fixture {
         }
     }
 
-    /// Sets the state of the probes (block up, in contact with a part) and of the door.
-    pub fn probe(
-        &mut self,
-        (up, touch, door_closed): (bool, bool, bool),
-        part: Option<&mut Specimen>,
-    ) {
+    /// Sets the state of probes and door.
+    pub fn probe(&mut self, probes: Probes, part: Option<&mut Specimen>) {
         match self {
-            Self::Relay(board) => board.probe(up, touch, part),
-            Self::Ssr(board) => board.probe(up, touch, door_closed),
+            Self::Relay(board) => board.probe(probes.up, probes.touch, part),
+            Self::Ssr(board) => board.probe(probes),
         }
     }
 

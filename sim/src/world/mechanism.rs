@@ -212,6 +212,11 @@ impl Mechanism {
         self.at(CylinderId::ProbeLift).at_far(now_us)
     }
 
+    /// Checks whether the pin block is up and not about to go down.
+    pub fn probes_stay(&self, now_us: u64) -> bool {
+        self.probes_up(now_us) && self.at(CylinderId::ProbeLift).is_commanded_far()
+    }
+
     /// Checks whether the probes touch the pins of a clamped part.
     pub fn probes_touch(&self, now_us: u64) -> bool {
         let clamped =

@@ -50,7 +50,7 @@ use draw::{Draw, Subject};
 use edges::Edges;
 use environment::Environment;
 use fault::{Fault, WorldFaults};
-use fixture::Fixture;
+use fixture::{Fixture, Probes};
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
 use signal::{Commands, In, Out};
@@ -226,12 +226,12 @@ impl World {
     /// Updates board, sensors and edges after a change in the mechanism.
     fn mechanism_changed(&mut self) {
         let now = self.now_us;
-        let (up, touch) = (
-            self.mechanism.probes_up(now),
-            self.mechanism.probes_touch(now),
-        );
-        let door_closed = self.signal(In::DoorClosed);
-        let probes = (up, touch, door_closed);
+        let probes = Probes {
+            up: self.mechanism.probes_up(now),
+            touch: self.mechanism.probes_touch(now),
+            stay: self.mechanism.probes_stay(now),
+            door_closed: self.signal(In::DoorClosed),
+        };
         self.fixture.probe(probes, in_nest(&mut self.mechanism));
         for (wire, edges) in &mut self.edges {
             if let Some(present) = self.mechanism.signal(wire.signal, now) {

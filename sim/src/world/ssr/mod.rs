@@ -26,13 +26,38 @@ pub struct Ssr {
     defect: Option<Defect>,
     light: Light,
     heat: Heat,
+    at: AtTemperature,
     now_us: f64,
+}
+
+/// Change of the temperature from which its effects are computed anew, kelvin.
+const STALE_K: f64 = 1e-4;
+
+/// What the temperature of the junction decides.
+#[derive(Debug, Clone, Copy)]
+struct AtTemperature {
+    celsius: f64,
+    threshold_a: f64,
+    on_siemens: f64,
+    blocked_siemens: f64,
+}
+
+impl AtTemperature {
+    fn new(values: &Values, celsius: f64) -> Self {
+        Self {
+            celsius,
+            threshold_a: values.model.threshold_at(celsius),
+            on_siemens: 1.0 / values.on_ohm(celsius),
+            blocked_siemens: values.blocked_siemens(celsius),
+        }
+    }
 }
 
 impl Ssr {
     /// Creates a cold, dark part at an instant, microseconds.
     pub fn new(values: Values, defect: Option<Defect>, now_us: f64) -> Self {
         Self {
+            at: AtTemperature::new(&values, values.celsius),
             values,
             defect,
             light: Light::default(),
@@ -41,9 +66,9 @@ impl Ssr {
         }
     }
 
-    /// Returns the temperature of the junction, degrees Celsius.
-    fn celsius(&self) -> f64 {
-        self.values.celsius + self.heat.kelvin()
+    /// Returns the temperature of the junction, degrees Celsius; changes below a ten-thousandth of a kelvin wait.
+    pub fn celsius(&self) -> f64 {
+        self.at.celsius
     }
 
     /// Returns voltage and current of the input at a source.
@@ -53,7 +78,7 @@ impl Ssr {
 
     /// Returns the light of an input current, over the threshold.
     pub fn goal(&self, input_a: f64) -> f64 {
-        input_a.max(0.0) / self.values.model.threshold_at(self.celsius())
+        input_a.max(0.0) / self.at.threshold_a
     }
 
     /// Returns the time after which the output switches at a light, microseconds; `None` for never.
@@ -75,8 +100,8 @@ impl Ssr {
     /// Returns the present conductance of the output, siemens.
     pub fn siemens(&self) -> f64 {
         match self.values.model.shorted || self.light.is_lit() {
-            true => 1.0 / self.values.on_ohm(self.celsius()),
-            false => self.values.blocked_siemens(self.celsius()),
+            true => self.at.on_siemens,
+            false => self.at.blocked_siemens,
         }
     }
 
@@ -91,6 +116,10 @@ impl Ssr {
         self.light.advance(goal, &self.values.model, dt_s);
         let k_per_w = self.values.model.junction_k_per_w;
         self.heat.advance(watts, k_per_w, dt_s);
+        let celsius = self.values.celsius + self.heat.kelvin();
+        if (celsius - self.at.celsius).abs() > STALE_K {
+            self.at = AtTemperature::new(&self.values, celsius);
+        }
         self.now_us += dt_us;
     }
 

@@ -1,7 +1,7 @@
 //! Circuit of the board: what is connected to the socket, and what each instrument finds at its terminals.
 
 use super::network::{Limited, Network};
-use super::{Reference, SsrBoard};
+use super::{InputAt, Reference, SsrBoard};
 use crate::scpi::circuit::{Drive, Reading, Terminal, over_resistor};
 use crate::scpi::passive::CLAMP_V;
 use crate::scpi::sources::PulseInput;
@@ -25,33 +25,40 @@ impl SsrBoard {
     /// Returns what an instrument or probe finds at its terminals; at the pulse source that is the control input.
     pub fn at(&self, terminal: Terminal, part: Option<&Specimen>) -> Reading {
         let part = part.and_then(Specimen::as_ssr);
-        let socket = |volts: f64| Reading {
-            volts,
-            amps: self.load_a(part),
-        };
+        // A probe takes no current.
+        let probe = |volts: f64| Reading { volts, amps: 0.0 };
         match terminal {
-            Terminal::Pulse => self.input(part),
+            Terminal::Pulse => self.input(part).1,
             Terminal::Input if self.commands.is_on(Out::DriveSelect) => {
                 over_resistor(self.smu_in, f64::INFINITY)
             }
-            Terminal::Input => self.input(part),
+            Terminal::Input => self.input(part).1,
             Terminal::Output => self.at_smu_out(part),
-            Terminal::Socket | Terminal::Load => socket(self.socket_v),
-            Terminal::Clamped => socket(self.socket_v.clamp(-CLAMP_V, CLAMP_V)),
+            Terminal::Socket => probe(self.socket_v),
+            Terminal::Clamped => probe(self.socket_v.clamp(-CLAMP_V, CLAMP_V)),
+            Terminal::Load => Reading {
+                volts: self.socket_v,
+                amps: self.load_a(part),
+            },
             Terminal::Line => Reading::default(),
         }
     }
 
-    /// Returns voltage and current of the control input.
-    fn input(&self, part: Option<&Ssr>) -> Reading {
+    /// Returns voltage and current of the control input, with their conditions.
+    pub(super) fn input(&self, part: Option<&Ssr>) -> (InputAt, Reading) {
         let drive = match self.commands.is_on(Out::DriveSelect) {
             true => self.pulse.at(self.now_us),
             false => self.smu_in,
         };
-        match part.filter(|it| self.meets_input(it)) {
-            Some(part) => part.input(self.through_film(drive)),
-            None => over_resistor(drive, f64::INFINITY),
-        }
+        let part = part.filter(|it| self.meets_input(it));
+        let drive = self.through_film(drive);
+        let celsius = part.map(Ssr::celsius);
+        let at = InputAt { drive, celsius };
+        let known = self.input.filter(|(known, _)| *known == at);
+        known.unwrap_or_else(|| {
+            let open = || over_resistor(drive, f64::INFINITY);
+            (at, part.map_or_else(open, |part| part.input(drive)))
+        })
     }
 
     /// Adds the film on the probes to a source that does not sense at the pins.
@@ -72,7 +79,7 @@ impl SsrBoard {
 
     /// Returns the light of the present input current, over the threshold.
     pub(super) fn goal(&self, part: &Ssr) -> f64 {
-        part.goal(self.input(Some(part)).amps)
+        part.goal(self.input(Some(part)).1.amps)
     }
 
     fn meets_input(&self, part: &Ssr) -> bool {

@@ -8,11 +8,12 @@ mod circuit;
 mod network;
 
 use super::draw::Draw;
+use super::fixture::Probes;
 use super::signal::{Commands, In, Out};
 use super::specimen::Specimen;
 use super::ssr::Ssr;
 use super::table::table;
-use crate::scpi::circuit::Drive;
+use crate::scpi::circuit::{Drive, Reading};
 use crate::scpi::sources::PulseInput;
 
 table!(
@@ -39,6 +40,13 @@ enum Reference {
     Resistor,
 }
 
+/// Conditions of an operating point of the input: the source, and the temperature of a connected part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct InputAt {
+    drive: Drive,
+    celsius: Option<f64>,
+}
+
 /// The interface board.
 #[derive(Debug, Clone)]
 pub struct SsrBoard {
@@ -55,6 +63,8 @@ pub struct SsrBoard {
     smu_in: Drive,
     smu_out: Drive,
     pulse: PulseInput,
+    /// Operating point of the input that was computed last, with its conditions.
+    input: Option<(InputAt, Reading)>,
     /// Voltage over the socket, volts.
     socket_v: f64,
     now_us: f64,
@@ -84,6 +94,7 @@ impl SsrBoard {
             smu_in: Drive::Open,
             smu_out: Drive::Open,
             pulse: PulseInput::default(),
+            input: None,
             socket_v: 0.0,
             now_us: 0.0,
         }
@@ -93,6 +104,7 @@ impl SsrBoard {
     pub fn advance(&mut self, t_us: f64, mut part: Option<&mut Specimen>) {
         while self.now_us < t_us {
             let part = part.as_deref_mut().and_then(Specimen::as_ssr_mut);
+            self.input = Some(self.input(part.as_deref()));
             let dt_us = self.step_us(part.as_deref()).min(t_us - self.now_us);
             self.pass(dt_us, part);
             let next_us = self.now_us + dt_us;
@@ -118,12 +130,14 @@ impl SsrBoard {
         }
     }
 
-    /// Sets the state of the probes (block up, in contact with a part) and of the door.
-    pub fn probe(&mut self, chain: bool, touching: bool, door_closed: bool) {
+    /// Sets the state of probes and door; the chain opens as soon as the block leaves its upper end.
+    pub fn probe(&mut self, probes: Probes) {
+        let touching = probes.touch && probes.stay;
         if touching && !self.touching {
             self.film_ohm += self.film_per_touch_ohm;
         }
-        (self.chain, self.touching, self.door_closed) = (chain, touching, door_closed);
+        (self.chain, self.touching) = (probes.stay, touching);
+        self.door_closed = probes.door_closed;
     }
 
     /// Makes each further touch add this film to both probes of the input together.
