@@ -88,7 +88,8 @@ impl Scene {
                 .filter(|it| slides_on.contains(*it) || self.is_ignored(mover, it))
                 .collect();
             for ends in places.windows(2) {
-                let line = json!({"id": "m", "mover": mover, "ignore": ignore,
+                let id = format!("{mover} {}", lines.len());
+                let line = json!({"id": id, "mover": mover, "ignore": ignore,
                     "from": {"position": ends[0]}, "to": {"position": ends[1]}});
                 lines += &format!("{line}\n");
             }
