@@ -65,7 +65,6 @@ struct FormArgs {
         long,
         value_name = "MM",
         value_delimiter = ',',
-        num_args = 6,
         allow_hyphen_values = true
     )]
     omega: Option<Vec<f64>>,

@@ -88,7 +88,8 @@ impl Scene {
                 .filter(|it| slides_on.contains(*it) || self.is_ignored(mover, it))
                 .collect();
             for ends in places.windows(2) {
-                let line = json!({"id": "m", "mover": mover, "ignore": ignore,
+                let id = format!("{mover} {}", lines.len());
+                let line = json!({"id": id, "mover": mover, "ignore": ignore,
                     "from": {"position": ends[0]}, "to": {"position": ends[1]}});
                 lines += &format!("{line}\n");
             }
@@ -162,10 +163,8 @@ fn a_changeover_leads_from_one_nest_to_the_other() {
         for step in steps(&said) {
             let is_off = step["action"] == "remove";
             scenes[usize::from(!is_off)].try_step(&workshop, &step, &in_place);
-            for leg in [&step["direction"]] {
-                let forbidden = if is_off { "-y" } else { "+y" };
-                assert_ne!(leg, forbidden);
-            }
+            let forbidden = if is_off { "-y" } else { "+y" };
+            assert_ne!(step["direction"], forbidden);
             for id in ids(&step["elements"]) {
                 assert!(!stays.contains(&id), "{id} stays");
                 let is_new = if is_off {

@@ -8,7 +8,7 @@ fn wall(count: usize) -> Vec<Element> {
     let cube = |at: usize| {
         let cell = [at % side, at / side % side, at / (side * side)];
         let low = cell.map(|it| 4.0 * it as f64);
-        let shorter = if at % 5 == 0 { 1.0 } else { 0.0 };
+        let shorter = if at.is_multiple_of(5) { 1.0 } else { 0.0 };
         between(
             &format!("e{at}"),
             low,

@@ -140,7 +140,7 @@ fn corner(cell: usize) -> [usize; 3] {
 fn beside(cell: usize, direction: usize) -> Option<usize> {
     let mut at = corner(cell);
     let axis = direction / 2;
-    at[axis] = if direction % 2 == 0 {
+    at[axis] = if direction.is_multiple_of(2) {
         at[axis].checked_sub(1)?
     } else {
         at[axis] + 1
