@@ -31,6 +31,7 @@ fn lot(seed: u64, parts: usize) -> Vec<Value> {
         hand.feed();
         hand.sort(2);
     }
+    assert_eq!(hand.rig.crashes(), Vec::<String>::new());
     hand.rig.truth()
 }
 
@@ -190,4 +191,18 @@ fn a_dirty_pin_opens_its_circuit() {
     hand.load();
     let amps = hand.value("smu_out", ":READ?");
     assert!(amps.abs() < 1e-5, "{amps}");
+}
+
+#[test]
+fn film_on_the_probes_opens_kelvin_bits() {
+    // 8 ohm at each touch, half of it on each probe of the input.
+    let mut hand = Hand::of(&super::hand::options(1, &["probe_film=800"]));
+    for touch in 1..=2 {
+        hand.feed();
+        hand.set("kelvin_test", true);
+        assert_eq!(hand.is_on("kelvin_in_plus"), touch == 1, "touch {touch}");
+        assert!(hand.is_on("kelvin_out_1"));
+        hand.set("kelvin_test", false);
+        hand.sort(2);
+    }
 }
