@@ -355,10 +355,12 @@ impl Bench {
                 vec![(self.part.ohm * given("level_a")).min(given("limit_v"))]
             }
             (Device::SmuOut, "drops_over_time") => {
-                self.is_heated = true;
+                assert!(self.is_lit, "drops of a blocked output");
+                (self.is_heated, self.source_v) = (true, 1.0);
                 let count = given("count") as usize;
                 let settled = |at: usize| 1.0 - (-(at as f64) * 0.02 / 0.03).exp();
-                let drop = |at| self.part.ohm * given("level_a") + self.part.rise_v * settled(at);
+                let cold_v = self.part.ohm * given("level_a");
+                let drop = |at| (cold_v + self.part.rise_v * settled(at)).min(given("limit_v"));
                 let drops: Vec<f64> = (0..count).map(drop).collect();
                 [vec![drops[count - 1]], drops].concat()
             }

@@ -22,6 +22,17 @@ pub fn drop_count() -> usize {
     (DRIFT_S / PERIOD_S).round() as usize + 1
 }
 
+fn drop_arguments(plan: &Plan, ampere: f64) -> [(&'static str, f64); 5] {
+    let (source, meter) = (&plan.drop.source, &plan.drop.meter);
+    [
+        ("range_a", source.full_scale),
+        ("limit_v", meter.full_scale),
+        ("range_v", meter.full_scale),
+        ("periods", 1.0),
+        ("level_a", ampere),
+    ]
+}
+
 impl Points {
     fn query(
         &self,
@@ -86,20 +97,14 @@ impl Points {
 
     /// Reads the drop at `ampere`.
     pub fn drop_at(&self, plan: &Plan, ampere: f64) -> Query {
-        let (source, meter) = (&plan.drop.source, &plan.drop.meter);
-        let arguments = [
-            ("range_a", source.full_scale),
-            ("limit_v", meter.full_scale),
-            ("range_v", meter.full_scale),
-            ("periods", 1.0),
-            ("level_a", ampere),
-        ];
+        let arguments = drop_arguments(plan, ampere);
         self.query(Device::SmuOut, "drop_at_current", &arguments)
     }
 
     /// Reads the drop [`drop_count`] times from the instant at which `ampere` begins.
-    pub fn drops(&self, ampere: f64) -> Query {
-        let arguments = [("count", drop_count() as f64), ("level_a", ampere)];
+    pub fn drops(&self, plan: &Plan, ampere: f64) -> Query {
+        let mut arguments = drop_arguments(plan, ampere).to_vec();
+        arguments.push(("count", drop_count() as f64));
         self.query(Device::SmuOut, "drops_over_time", &arguments)
     }
 

@@ -15,7 +15,7 @@ use units::{Span, Unit};
 /// Share of the voltage limit from which the current is below the commanded one.
 const LIMITED: f64 = 0.98;
 
-/// Returns the acts: the input at its nominal voltage, half the current, then the full one over time.
+/// Returns the acts: the input at its nominal voltage, the full current over time from the cold part on, then half of it.
 pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
     let mut acts = board::change(points, state.position, Position::Direct);
     state.position = Position::Direct;
@@ -24,8 +24,8 @@ pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
         Act::Query(vec![control]),
         Act::Wait(Span::seconds(plan.on_s)),
         Act::Query(vec![
+            points.drops(plan, plan.drop_a),
             points.drop_at(plan, plan.drop_a / 2.0),
-            points.drops(plan.drop_a),
             points.off(Device::SmuOut),
         ]),
     ]);
@@ -35,7 +35,7 @@ pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
 /// Concludes resistance, drop and drift.
 pub fn conclude(state: &mut State, plan: &Plan, given: &Given) -> Result<Next, NotDelivered> {
     let device = Device::SmuOut;
-    let [half, full] = given.numbers(device)?;
+    let [full, half] = given.numbers(device)?;
     // The first number of the series repeats the last one.
     let ([half_v], Some((_, drops))) = (half, full.split_first()) else {
         return Err(NotDelivered(device));
