@@ -1788,13 +1788,13 @@ exchange-several = { $first } | 及另外 { $more } 种含义
 ## SCPI 仪器的故障：查询程序为何没有给出数值
 
 instrument-timeout = { $command }：{ $limit_ms } ms 内没有应答。
-instrument-disconnected = 与仪器没有连接：{ $said }。
-instrument-malformed = { $command }：应答损坏或格式不符：{ $said }。
-instrument-instrument = 仪器报告错误 { $number }：{ $said }。
+instrument-disconnected = 与仪器没有连接。
+instrument-malformed = { $command }：应答损坏或格式不符。
+instrument-instrument = 仪器报告错误 { $number }。
 instrument-queue_overflow = 仪器的错误队列已溢出，将重新发送设置。
 instrument-over_range = { $command }：结果超出仪器量程。
 instrument-not_a_number = { $command }：仪器没有给出数值结果。
-instrument-local = 仪器处于本地模式：{ $said }。请释放其面板控制。
+instrument-local = 仪器处于本地模式。请释放其面板控制。
 instrument-wrong_identity = 应答的是另一台仪器：实际为 { $found }，应为 { $expected }。
 instrument-power_cycled = 仪器曾断电重启，设置已丢失，将重新发送。
 instrument-out_of_step = { $command }：应答与查询不同步，数值已丢弃。
@@ -1802,4 +1802,4 @@ instrument-read_back = { $command }：仪器的设置为 { $found }，应为 { $
 instrument-adapter_address = GPIB 适配器的地址为 { $found }，应为 { $expected }；另有程序在使用它。
 instrument-never_silent = 链路始终不静默，另有程序在使用该仪器。
 instrument-overdue = { $limit_ms } ms 内没有完成。
-instrument-link_down = 尝试 { $attempts } 次后链路仍不可用：{ $said }。
+instrument-link_down = 尝试 { $attempts } 次后链路仍不可用。

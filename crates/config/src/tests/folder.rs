@@ -151,7 +151,7 @@ fn init_writes_every_file_to_new_and_empty_directories() {
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&new), mode(&folder.path().join("plant")));
     let entries = |dir: &Path| fs::read_dir(dir).unwrap().count();
-    assert_eq!((entries(new.parent().unwrap()), entries(&empty)), (1, 9));
+    assert_eq!((entries(new.parent().unwrap()), entries(&empty)), (1, 10));
 }
 
 #[test]

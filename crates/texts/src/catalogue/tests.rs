@@ -114,7 +114,7 @@ fn chinese_texts_have_full_width_punctuation() {
 
 /// Latin words that a Chinese text may have: units, symbols of statistics and metrology, names, keys, codes, columns of
 /// files.
-const LATIN: [&str; 46] = [
+const LATIN: [&str; 48] = [
     "A",
     "B",
     "V",
@@ -161,6 +161,8 @@ const LATIN: [&str; 46] = [
     "CR",
     "ASCII",
     "GPIB",
+    "SCPI",
+    "MOSFET",
 ];
 
 #[test]
