@@ -27,11 +27,9 @@ pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Bu
 
 /// Returns the budget of a threshold of the control voltage, V, that lies in an interval `width_v` wide.
 pub fn threshold(plan: &Plan, volts: f64, width_v: f64) -> Budget {
-    let last = plan.steps.saturating_sub(1);
-    let unseen = 0.5_f64.powi(i32::try_from(last).unwrap_or(i32::MAX).saturating_add(2));
     Budget::default()
         .with("source", applied_u(&plan.input.source, volts))
-        .with("dwell", rectangular(volts * unseen))
+        .with("dwell", rectangular(plan.unseen_v()))
         .with_random("step", resolution(width_v))
 }
 

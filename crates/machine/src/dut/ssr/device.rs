@@ -1,16 +1,17 @@
 //! A recipe of a solid-state relay on a rig.
 
+use super::learned::Learned;
 use super::measure::Test;
 use super::plan::Plan;
 use super::points::Points;
 use super::recipe::SsrRecipe;
 use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
-use crate::dut::{Procedure, Recipe};
+use crate::dut::{Procedure, Recipe, TestRecord};
 use crate::rig::point::MissingPoint;
 use std::sync::Arc;
 use units::RigTime;
 
-/// A recipe on a rig; the same for every part.
+/// A recipe on a rig, with what the lot has shown so far.
 #[derive(Debug, Clone)]
 pub struct Device {
     /// The recipe.
@@ -19,6 +20,8 @@ pub struct Device {
     pub plan: Arc<Plan>,
     /// Points and instruments.
     pub points: Arc<Points>,
+    /// Thresholds of earlier parts.
+    pub learned: Learned,
 }
 
 impl Device {
@@ -43,6 +46,7 @@ impl Device {
             recipe,
             plan: Arc::new(plan),
             points: Arc::new(points),
+            learned: Learned::default(),
         })
     }
 }
@@ -50,5 +54,11 @@ impl Device {
 impl DeviceUnderTest for Device {
     fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
         Procedure::Ssr(Box::new(Test::begin(self.clone(), order, now)))
+    }
+
+    fn learn(&mut self, record: &TestRecord, pass: bool) {
+        if pass {
+            self.learned.add(record);
+        }
     }
 }

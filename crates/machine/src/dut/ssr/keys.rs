@@ -1,7 +1,7 @@
 //! Keys of the recipe of a solid-state relay.
 
 use crate::dut::keys::{BODY, PIN_LENGTH, Sections, limit, table};
-use crate::form::{Form, Key, above_zero, from_to, key, optional, whole};
+use crate::form::{Form, Key, above_zero, from_to, key, optional};
 
 /// Keys of the sections `[part]`, `[limits]` and `[test]`.
 pub const SECTIONS: Sections = Sections {
@@ -36,8 +36,9 @@ const LIMITS: &[Key] = table! {
 
 const TEST: &[Key] = table! {
     key("method", Form::Choice(&["conformity", "bisect"]), "station",
-        "whether halved steps find v_on_v and v_off_v after the conformity test, which alone decides");
-    key("steps", whole(3, 12, ""), "station", "halved steps of a search");
+        "whether a search finds v_on_v and v_off_v after the conformity test, which alone decides");
+    key("resolution_mv", from_to(1.0, 1000.0, "mV"), "station",
+        "width of the interval at which a search ends; its middle is the result");
     key("time_constant_ms", from_to(0.01, 100.0, "ms"), "station",
         "longest time constant of the output; near a threshold it turns on many time constants late");
     key("reverse_v", above_zero(60.0, "V"), "station", "voltage at the reversed control input");

@@ -9,7 +9,7 @@
 //! | which programs the instruments run | [`program`] |
 //! | how accurate a figure is | [`accuracy`] |
 //! | where the edges of a record are | [`edges`] |
-//! | how halved steps find a threshold | [`search`] |
+//! | how a search finds a threshold, and where it begins | [`search`], [`learned`] |
 //! | what a test finds in addition to figures | [`finding`] |
 //! | whether a rig can carry out a recipe | [`feasible`] |
 //! | the test | [`measure`] |
@@ -23,6 +23,7 @@ pub mod edges;
 pub mod feasible;
 pub mod finding;
 pub mod keys;
+pub mod learned;
 pub mod made_up;
 pub mod measure;
 pub mod parameter;

@@ -1,7 +1,9 @@
 //! Characteristics of a solid-state relay, as data.
 
 use super::bins;
-use crate::dut::characteristic::{Characteristic, Definition, KindCharacteristic};
+use crate::dut::characteristic::{
+    AcceptedError, Characteristic, Definition, ErrorUnit, KindCharacteristic,
+};
 use crate::gauge::repetition::MeanOf;
 use crate::rig::bin::Bin;
 use units::Unit;
@@ -53,6 +55,18 @@ impl Parameter {
 impl KindCharacteristic for Parameter {
     fn definition(&self) -> &'static Definition {
         &DEFINITIONS[*self as usize]
+    }
+
+    fn accepted_error(&self, _rated_v: Option<f64>) -> Option<AcceptedError> {
+        let (unit, rms) = match self {
+            Self::TurnOnVoltage | Self::TurnOffVoltage => (ErrorUnit::Millivolt, 10.0),
+            Self::TurnOnTime | Self::TurnOffTime => (ErrorUnit::Own, 10.0),
+            Self::Drop => (ErrorUnit::Millivolt, 3.0),
+            Self::OnResistance => (ErrorUnit::Own, 1.0),
+            Self::LeakageCold | Self::LeakageHot => (ErrorUnit::Own, 0.02),
+            Self::InputCurrent | Self::ReverseCurrent | Self::Drift => return None,
+        };
+        Some(AcceptedError { unit, rms })
     }
 }
 

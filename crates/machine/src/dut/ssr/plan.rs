@@ -85,8 +85,8 @@ pub struct Plan {
     pub body_diode: bool,
     /// True when a search follows the conformity test.
     pub searches: bool,
-    /// Halved steps of a search.
-    pub steps: u32,
+    /// Width of the interval at which a search ends, V.
+    pub resolution_v: f64,
     /// Longest time constant of the output, s.
     pub time_constant_s: f64,
     /// Voltage at which the output must conduct, V; none without a limit.
@@ -174,7 +174,7 @@ impl Plan {
             drop_a,
             body_diode: part.body_diode,
             searches: test.method == Method::Bisect,
-            steps: test.steps,
+            resolution_v: test.resolution_mv / 1e3,
             time_constant_s,
             turn_on_v: high(Parameter::TurnOnVoltage),
             turn_off_v: limits.of(Parameter::TurnOffVoltage).low,
@@ -197,11 +197,16 @@ impl Plan {
         })
     }
 
-    /// Returns the time that the output needs to follow step number `step` of a search, from 0. Closer to its threshold
-    /// it turns on later, by one time constant times ln 2 for each half of the distance.
-    pub fn dwell(&self, step: u32) -> Span {
-        let constants = f64::from(step + 2) * std::f64::consts::LN_2;
-        Span::seconds(constants * self.time_constant_s)
+    /// Returns the time that the output needs to follow a step of a search. Close to its threshold it turns on late, by
+    /// one time constant times ln(V / distance); this time shows every threshold but those within [`Self::unseen_v`].
+    pub fn dwell(&self) -> Span {
+        let constants = (self.turn_on_v.unwrap_or(self.control_v) / self.unseen_v()).ln();
+        Span::seconds(constants.max(1.0) * self.time_constant_s)
+    }
+
+    /// Returns the distance from its threshold within which the output may not have followed a step in time, V.
+    pub fn unseen_v(&self) -> f64 {
+        self.resolution_v / 8.0
     }
 
     /// Returns the length of the control pulse, s.

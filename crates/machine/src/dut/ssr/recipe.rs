@@ -56,7 +56,7 @@ pub struct PartData {
 pub enum Method {
     /// Whether the output obeys at both limits.
     Conformity,
-    /// The same, then both voltages by halved steps.
+    /// The same, then both voltages by a search.
     Bisect,
 }
 
@@ -65,8 +65,8 @@ pub enum Method {
 pub struct TestPlan {
     /// What is measured of the turn-on and turn-off voltages.
     pub method: Method,
-    /// Number of halved steps of a search.
-    pub steps: u32,
+    /// Width of the interval at which a search ends, mV.
+    pub resolution_mv: f64,
     /// Longest time constant of the output, ms.
     pub time_constant_ms: f64,
     /// Voltage at the reversed control input, V.

@@ -61,7 +61,10 @@ impl Test {
     pub fn begin(device: Device, order: &TestOrder, now: RigTime) -> Self {
         let mut stages: VecDeque<Stage> = stage::order(&device.plan).into();
         stages.extend([Stage::SourcesOff, Stage::Discharge]);
-        let mut state = State::default();
+        let mut state = State {
+            learned: device.learned,
+            ..State::default()
+        };
         let stage = stages.pop_front().unwrap_or(Stage::Discharge);
         let acts = state.acts(stage, &device.plan, &device.points);
         Self {

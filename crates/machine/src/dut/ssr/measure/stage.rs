@@ -27,7 +27,7 @@ pub enum Stage {
     Conducts,
     /// The same a guard band beyond the limit.
     ConductsBeyond,
-    /// One halved step of a search.
+    /// One step of a search.
     Threshold(Direction),
     /// Times of one control pulse.
     Timing,

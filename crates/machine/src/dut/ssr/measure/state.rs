@@ -7,6 +7,7 @@ use super::stage::Stage;
 use super::{conformity, contact, discharge, input, leakage, resistance, threshold, timing};
 use crate::dut::record::TestRecord;
 use crate::dut::ssr::Finding;
+use crate::dut::ssr::learned::Learned;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::Points;
@@ -26,6 +27,8 @@ pub struct State {
     pub position: Position,
     /// Finding that holds unless the next stage finds another cause.
     pub suspected: Option<Finding>,
+    /// Thresholds of earlier parts.
+    pub learned: Learned,
     /// Search under way.
     pub search: Option<Search>,
     /// Upper end of the interval that holds the turn-on voltage, V.

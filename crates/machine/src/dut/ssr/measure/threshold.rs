@@ -1,4 +1,4 @@
-//! Turn-on and turn-off voltage by halved steps. The output switches with hysteresis, so each step begins from 0 V, or
+//! Turn-on and turn-off voltage by a search. The output switches with hysteresis, so each step begins from 0 V, or
 //! from the nominal voltage for the turn-off.
 
 use super::conformity::conducts;
@@ -14,6 +14,9 @@ use crate::gauge::Judgement;
 use crate::instrument::act::Act;
 use units::Unit;
 
+/// Most steps of a search; one without expectation takes twelve from 40 V to 10 mV.
+const MOST_STEPS: u32 = 20;
+
 /// Returns the acts of one step; none when no interval is proven to hold the threshold.
 pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Points) -> Vec<Act> {
     let Some(search) = state.search.or_else(|| interval(state, direction, plan)) else {
@@ -24,10 +27,10 @@ pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Point
         Direction::Rising => 0.0,
         Direction::Falling => plan.control_v,
     };
-    let step = points.step(Device::SmuIn, before_v, search.middle_v());
+    let step = points.step(Device::SmuIn, before_v, search.next_v());
     vec![
         Act::Query(vec![step]),
-        Act::Wait(plan.dwell(search.done)),
+        Act::Wait(plan.dwell()),
         Act::Query(vec![points.read(Device::SmuOut)]),
     ]
 }
@@ -41,9 +44,13 @@ fn interval(state: &State, direction: Direction, plan: &Plan) -> Option<Search> 
     }
     let low_v = plan.turn_off_v.unwrap_or(0.0);
     let high_v = plan.turn_on_v.unwrap_or(plan.control_v);
+    let turn_on = state.record.result(Parameter::TurnOnVoltage);
+    let expected = state
+        .learned
+        .expected(direction, turn_on.map(|it| it.value));
     Some(match direction {
-        Direction::Rising => Search::between(low_v, high_v),
-        Direction::Falling => Search::between(low_v, state.turn_on_v.unwrap_or(high_v)),
+        Direction::Rising => Search::between(low_v, high_v, expected),
+        Direction::Falling => Search::between(low_v, state.turn_on_v.unwrap_or(high_v), expected),
     })
 }
 
@@ -58,8 +65,8 @@ pub fn conclude(
         return Ok(Next::Planned);
     };
     let [ampere] = given.singles(Device::SmuOut)?;
-    search.halve(conducts(ampere));
-    if search.done < plan.steps {
+    search.narrow(conducts(ampere));
+    if search.width_v() > plan.resolution_v && search.tried < MOST_STEPS {
         state.search = Some(search);
         return Ok(Next::Insert(Stage::Threshold(direction)));
     }
