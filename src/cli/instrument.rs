@@ -26,7 +26,7 @@ use units::Span;
   relayrig instrument send --link tcp:192.168.1.20:5025 '*IDN?'
   relayrig instrument check --link gpib-tcp:192.168.1.30:1234:9 --profile ac-source-61500
   relayrig instrument monitor --link serial:/dev/ttyUSB0:9600 --query 'READ?'
-  relayrig instrument check --instrument smu_in
+  relayrig instrument check --instrument dmm
 
 --instrument names an instrument of rig.toml. A link is tcp:HOST:PORT, serial:PATH:BAUD, or one of them behind a Prologix-type GPIB adapter: gpib-tcp:HOST:PORT:ADDR, \
 gpib-serial:PATH:BAUD:ADDR.")]

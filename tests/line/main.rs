@@ -23,6 +23,7 @@
 //! - `prompts`: prompts of a recipe, with answers given in advance.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
 //! - `stories`: scripts of troubles and orders with their expected course.
+//! - `ssr`: lots of solid-state relays, compared with the truth of their world.
 //! - `storm`: random transactions under all faults of a line; the fingerprint of each value names its origin.
 //! - `tempest`: the whole program under faults, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes while a lot runs.
@@ -79,6 +80,8 @@ mod rows;
 mod serials;
 #[cfg(all(feature = "sim", unix))]
 mod serve;
+#[cfg(feature = "sim")]
+mod ssr;
 #[cfg(feature = "sim")]
 mod stories;
 #[cfg(feature = "sim")]

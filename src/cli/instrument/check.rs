@@ -17,7 +17,7 @@ use serde_json::json;
 #[command(after_help = "Examples:
   relayrig instrument check --link tcp:192.168.1.20:5025 --profile smu-2450
   relayrig instrument check --link tcp:192.168.1.20:5025 --profile smu-2450 --run current_at_level,level_v=4
-  relayrig instrument check --instrument smu_in
+  relayrig instrument check --instrument dmm
   relayrig instrument check --link gpib-serial:/dev/ttyUSB0:115200:9 --profile ac-source-61500 --json
 
 The check sends the set-up of the profile, which may reset the instrument, then the programs of --run, and at the end the \

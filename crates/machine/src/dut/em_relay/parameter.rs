@@ -195,20 +195,15 @@ impl KindCharacteristic for Parameter {
             allowed_rms,
             ..
         } = *self.facts();
-        Some(match definition.unit {
-            Unit::Ohm => AcceptedError {
-                unit: ErrorUnit::Percent,
-                rms: allowed_rms,
-            },
-            Unit::Volt => AcceptedError {
-                unit: ErrorUnit::Millivolt,
-                rms: (allowed_rms * rated_v? * 1e4).round() / 1e3,
-            },
-            _ => AcceptedError {
-                unit: ErrorUnit::Own,
-                rms: allowed_rms,
-            },
-        })
+        let (unit, rms) = if definition.unit == Unit::Ohm {
+            (ErrorUnit::Percent, allowed_rms)
+        } else if definition.unit == Unit::Volt {
+            let share_v = allowed_rms * rated_v?;
+            (ErrorUnit::Millivolt, (share_v * 1e4).round() / 1e3)
+        } else {
+            (ErrorUnit::Own, allowed_rms)
+        };
+        Some(AcceptedError { unit, rms })
     }
 
     fn lower_bound(&self, curves: &[Curve], rated_v: Option<f64>) -> Option<f64> {
