@@ -8,7 +8,7 @@
 //! | [`instrument`] | the instruments |
 //! | [`device`] | an instrument behind its message queue |
 //! | [`adapter`], [`port`] | GPIB adapter; bytes in and out of a link, with its faults |
-//! | [`bench`], [`file`] | instruments and circuit together, from a file |
+//! | [`mod@bench`], [`mod@file`] | instruments and circuit together, from a file |
 //! | [`of_rig`] | instruments of a rig, from its files |
 //! | [`serve`] | sockets and pseudo-terminals in real time, streams in virtual time |
 
