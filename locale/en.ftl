@@ -39,9 +39,9 @@ alarm-instrument_trouble = { $detail } Check its power, its cable and its front 
     .cause = An SCPI instrument does not answer, or is not the one of the wiring.
     .consequence = All outputs are safe; a part inside goes to retest after the reset.
     .action = Check power, cable and front panel of the instrument named, or end the program that uses it; then clear and reset.
-alarm-instrument_not_safe = { $instrument } has not confirmed that its output is off. The rig has disconnected it from the socket.
+alarm-instrument_not_safe = { $instrument } has not confirmed that its output is off.
     .cause = An SCPI instrument has not confirmed its safe state in time.
-    .consequence = All outputs are safe; the output of the instrument may still be on, disconnected from the socket.
+    .consequence = The output of the instrument may still be on. The rig orders its own outputs to disconnect it from the socket.
     .action = Switch its output off at its front panel, check its cable; then clear and reset.
 alarm-sensor_stale = { $input } was not read for too long. Check cable, power and address of its module.
     .cause = A safety input is not read any more.
@@ -1830,3 +1830,18 @@ instrument-adapter_address = The GPIB adapter has address { $found }, expected {
 instrument-never_silent = The link never falls silent; another program uses the instrument.
 instrument-overdue = Not finished within { $limit_ms } ms.
 instrument-link_down = The link is down after { $attempts } attempts: { $said }.
+
+## Plans: what blocks the elements of a scene, and in which order they come off and go on
+
+plan-blocked = { $element } towards { $way }: { $others }
+plan-remove = { $number }. Take off { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-add = { $number }. Put on { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-remove_on_bench = { $number }. On the bench, take off { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-add_on_bench = { $number }. On the bench, put on { $elements }: { $way }, least distance { $distance }, tool from { $from }.
+plan-beyond = above 25 mm
+plan-locked = No order exists. These elements lock each other: { $elements }.
+plan-held = { $element } is held by { $others }.
+plan-stays = Stays in place: { $elements }.
+plan-goes = Comes off for good: { $elements }.
+plan-comes = Is new: { $elements }.
+plan-returns = Comes off for a while and goes back: { $elements }.

@@ -39,9 +39,9 @@ alarm-instrument_trouble = { $detail }请检查其电源、电缆和面板。
     .cause = SCPI 仪器无应答，或不是接线文件中的仪器。
     .consequence = 所有输出已安全；复位后机内工件送入复测箱。
     .action = 检查所示仪器的电源、电缆和面板，或结束占用它的程序，然后清除并复位。
-alarm-instrument_not_safe = 仪器 { $instrument } 未确认其输出已关闭。设备已将其与插座断开。
+alarm-instrument_not_safe = 仪器 { $instrument } 未确认其输出已关闭。
     .cause = SCPI 仪器未在规定时间内确认安全状态。
-    .consequence = 所有输出已安全；该仪器的输出可能仍接通，但已与插座断开。
+    .consequence = 该仪器的输出可能仍接通。设备命令自身输出将其与插座断开。
     .action = 在其面板上关闭输出，检查电缆，然后清除并复位。
 alarm-sensor_stale = 安全输入“{ $input }”长时间未读到。请检查电缆、电源和模块地址。
     .cause = 安全输入长时间未读到。
@@ -1803,3 +1803,18 @@ instrument-adapter_address = GPIB 适配器的地址为 { $found }，应为 { $e
 instrument-never_silent = 链路始终不静默，另有程序在使用该仪器。
 instrument-overdue = { $limit_ms } ms 内没有完成。
 instrument-link_down = 尝试 { $attempts } 次后链路仍不可用。
+
+## Plans: what blocks the elements of a scene, and in which order they come off and go on
+
+plan-blocked = { $element } 朝 { $way }：{ $others }
+plan-remove = { $number }、拆下 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-add = { $number }、装上 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-remove_on_bench = { $number }、在台面上拆下 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-add_on_bench = { $number }、在台面上装上 { $elements }：{ $way }，最小距离 { $distance }，工具从 { $from } 侧进入。
+plan-beyond = 25 mm 以上
+plan-locked = 不存在可行顺序。以下元件互相锁住：{ $elements }。
+plan-held = { $element } 被 { $others } 挡住。
+plan-stays = 保持不动：{ $elements }。
+plan-goes = 拆下不再装回：{ $elements }。
+plan-comes = 新装：{ $elements }。
+plan-returns = 暂时拆下后装回：{ $elements }。

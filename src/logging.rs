@@ -17,7 +17,7 @@ const JSON: &str = "json";
 const LEVELS: [&str; 6] = ["off", "error", "warn", "info", "debug", "trace"];
 
 /// Modules that `--log` knows: the crates of this program, and libraries that serve the page.
-const MODULES: [&str; 22] = [
+const MODULES: [&str; 23] = [
     "relayrig",
     "app",
     "bus",
@@ -28,6 +28,7 @@ const MODULES: [&str; 22] = [
     "lpm",
     "machine",
     "page",
+    "plan",
     "quality",
     "rigsim",
     "scpi",

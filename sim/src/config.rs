@@ -166,7 +166,7 @@ pub struct RigFile {
     pub analog_out: BTreeMap<String, Terminal>,
     /// Instruments by name, each with its `link`.
     pub instruments: BTreeMap<String, Table>,
-    /// Ranges of the coil supply; empty for a rig with only one.
+    /// Ranges of the coil supply; empty for a supply with one fixed range.
     pub supply_ranges: Vec<SupplyRange>,
     /// Digital inputs by point name.
     pub digital_in: BTreeMap<String, Terminal>,

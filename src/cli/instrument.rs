@@ -56,7 +56,7 @@ struct LinkArgs {
     /// Instrument of rig.toml, whose link and profile serve unless --link or --profile is given
     #[arg(long, value_name = "NAME")]
     instrument: Option<String>,
-    /// Milliseconds until a reply; without it those of the profile, or 1000
+    /// Longest wait for a reply, milliseconds; without it that of the profile, or 1000
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=60_000))]
     timeout: Option<u64>,
 }
@@ -113,7 +113,7 @@ struct Place {
 }
 
 impl Place {
-    /// Returns the time that characters take on a serial port, milliseconds; 0 on a network.
+    /// Returns the time that this number of characters takes on a serial port, milliseconds; 0 on a network.
     fn wire_ms(&self, characters: usize) -> f64 {
         match self.link.transport {
             Transport::Tcp { .. } => 0.0,
@@ -165,7 +165,7 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Returns the sentence of a failure, in English.
+/// Returns the English text of a failure.
 fn sentence(failure: &Failure) -> String {
     message(failure).say(Lang::En)
 }

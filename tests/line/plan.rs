@@ -180,6 +180,34 @@ fn a_changeover_leads_from_one_nest_to_the_other() {
 }
 
 #[test]
+fn printed_answers_are_in_the_language_asked_for() {
+    const LOCKED_AWAY: &str = "disassembly --scene scene.json --stay left --stay right --forbid=+y --forbid=-y \
+                               --forbid=+z --forbid=-z";
+    let workshop = Workshop::new("plan-printed");
+    workshop.write("scene.json", LOCKED);
+    for (question, word, status) in [
+        ("interference", "towards", 0),
+        ("disassembly --stay baseplate*", "Take off", 0),
+        ("assembly --stay baseplate*", "Put on", 0),
+        (
+            &format!("changeover --from {DEFAULT} --to {OTHER}"),
+            "Comes off for good",
+            0,
+        ),
+        (LOCKED_AWAY, "lock each other", 1),
+    ] {
+        let said = |lang: &str| workshop.run(&format!("plan {question} --lang {lang}"));
+        let english = said("en").with_status(status);
+        assert!(
+            english.stdout.contains(word) && english.stdout.is_ascii(),
+            "{english}"
+        );
+        let chinese = said("zh").with_status(status);
+        assert!(!chinese.stdout.is_ascii(), "{chinese}");
+    }
+}
+
+#[test]
 fn the_second_nest_makes_a_rig() {
     let workshop = Workshop::new("plan-nest");
     workshop.write(DEFAULT, &workshop.read(OTHER));

@@ -123,12 +123,12 @@ impl Instruments {
         (slot.is_ready, slot.prepare) = (is_ready, again);
     }
 
-    /// Drops preparations that have not ended; returns the instruments that are not ready.
+    /// Drops preparations that have not ended, but no safe program; returns the instruments that are not ready.
     pub fn end_preparation(&mut self) -> Vec<Instrument> {
         let slots = self.slots.iter_mut().filter(|slot| !slot.is_ready);
         let unready = slots.map(|slot| {
             slot.prepare = false;
-            if let Some((_, purpose)) = &mut slot.busy {
+            if let Some((_, purpose @ Purpose::Prepare)) = &mut slot.busy {
                 *purpose = Purpose::Dropped;
             }
             slot.ends.instrument

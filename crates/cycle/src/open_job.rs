@@ -27,7 +27,7 @@ impl OpenJob {
         self.delivered.push(Delivered::default());
     }
 
-    /// Closes the transaction of a lost write; the job then waits for the repetition of this write, which begins later.
+    /// Closes the transaction of a lost write; the job stays open until the cycle has repeated this write.
     pub(super) fn rewrites(&mut self, module: ModuleId) {
         self.parts = self.parts.saturating_sub(1);
         self.rewrites.push(module);
@@ -71,9 +71,10 @@ impl OpenJob {
         }
     }
 
-    /// Returns the result of a job without open transactions.
+    /// Returns the result of the job; `None` while a transaction is open or a lost write waits for its repetition.
     pub(super) fn if_empty(&mut self, at: RigTime) -> Option<JobDone> {
-        (self.parts == 0).then(|| JobDone {
+        let is_done = self.parts == 0 && self.rewrites.is_empty();
+        is_done.then(|| JobDone {
             at,
             trouble: self.trouble.clone(),
             delivered: match self.trouble {

@@ -276,7 +276,7 @@ impl Traffic {
         Some(done)
     }
 
-    /// Returns the result of a measuring job that needed no transaction.
+    /// Returns the result of the measuring job if it needed no transaction, else `None`.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
         let done = self.job.as_mut()?.if_empty(now)?;
         self.job = None;

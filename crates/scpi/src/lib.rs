@@ -37,8 +37,8 @@
 //! | `reply.rs`, `status.rs` | numbers, strings, blocks; error queue, event register, identity |
 //! | `reader.rs` | cuts bytes into replies, with a bound on each |
 //! | `program.rs`, `profile.rs` | programs; instrument profiles that build them |
-//! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; a program on its way; numbers that prove the step |
-//! | `framing.rs`, `address.rs`, `settings.rs` | ends of messages and adapters; places; times |
+//! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; the run of a program; numbers that prove the step |
+//! | `framing.rs`, `address.rs`, `settings.rs` | terminators and adapters; addresses; times |
 //! | `waveform.rs` | samples of a digitizer |
 //! | `accuracy.rs` | how far an instrument may err |
 //! | `failure.rs` | every reason why there is no value |

@@ -70,14 +70,15 @@ pub trait Desk: Send + Sync {
         ports
     }
 
-    /// Returns the name of each instrument behind a port at `place` (`tcp:HOST:PORT`, `serial:PATH:BAUD`) with its link.
+    /// Returns each instrument behind a port: its name, and its link with the port at `place` (`tcp:HOST:PORT`,
+    /// `serial:PATH:BAUD`).
     fn links(&self, port: usize, place: &str) -> Vec<(String, String)> {
         let mut links = Vec::new();
         self.look(&mut |it| links = it.ports[port].links(place, &it.devices));
         links
     }
 
-    /// Accepts a host; `false` when a fault keeps the port busy.
+    /// Accepts a host on a port; returns `false` when a fault keeps the port busy.
     fn open(&self, port: usize, now_us: u64) -> bool {
         let mut open = false;
         self.at(now_us, &mut |it| {
@@ -100,7 +101,7 @@ pub trait Desk: Send + Sync {
         });
     }
 
-    /// Returns what leaves the port by now.
+    /// Returns everything that has left the port up to `now_us`.
     fn due(&self, port: usize, now_us: u64) -> Vec<Out> {
         let mut due = Vec::new();
         self.at(now_us, &mut |it| {

@@ -17,7 +17,7 @@ pub enum Terminal {
     Load,
     /// Voltage over the output at the socket of the part, apart from the wires of an instrument.
     Socket,
-    /// Voltage over the output behind the clamp of +-10 V.
+    /// Voltage over the output, clamped to +-10 V.
     Clamped,
 }
 

@@ -156,7 +156,7 @@ fn attach(
     Ok(())
 }
 
-/// Reads the keys of a model: a digitizer has channels, any other model one pair of terminals.
+/// Reads the keys that depend on the model: a digitizer has channels, any other model has one pair of terminals.
 pub(super) fn fitting(keys: &Table, model: Model) -> Result<Fitting, ConfigError> {
     let latency_ms = setting::number(keys, "latency_ms", 0.0..=1e6)?;
     let (mut at, mut channels) = (None, Vec::new());

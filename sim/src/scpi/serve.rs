@@ -79,7 +79,7 @@ pub(crate) async fn in_real_time(
     Ok(links)
 }
 
-/// Advances the bench while no host asks for anything.
+/// Advances the bench at regular intervals, also while no host sends anything.
 async fn beat(bench: Arc<dyn Desk>, clock: Clock) {
     loop {
         sleep(BEAT).await;
@@ -87,7 +87,7 @@ async fn beat(bench: Arc<dyn Desk>, clock: Clock) {
     }
 }
 
-/// Opens a port and starts to serve it; returns its place.
+/// Opens a port and starts to serve it; returns its place (`tcp:HOST:PORT`, `serial:PATH:BAUD`).
 async fn open(bench: Arc<dyn Desk>, number: usize, link: Link, clock: Clock) -> io::Result<String> {
     match link {
         Link::Tcp(port) => {
@@ -104,7 +104,7 @@ async fn open(bench: Arc<dyn Desk>, number: usize, link: Link, clock: Clock) -> 
     }
 }
 
-/// Serves one host after the other; the next one waits until the present one leaves.
+/// Serves one host at a time; the next one waits until the present one disconnects.
 async fn accept(bench: Arc<dyn Desk>, number: usize, listener: TcpListener, clock: Clock) {
     loop {
         let Ok((mut stream, _)) = listener.accept().await else {
@@ -119,7 +119,8 @@ async fn accept(bench: Arc<dyn Desk>, number: usize, listener: TcpListener, cloc
     }
 }
 
-/// Serves a terminal, whose hosts come and go unseen; a connection that a fault ends goes on at once.
+/// Serves a terminal, which does not show when hosts come and go; after a fault ends a connection, the next begins at
+/// once.
 async fn keep(bench: Arc<dyn Desk>, number: usize, mut terminal: UnixStream, clock: Clock) {
     while converse(&*bench, number, &mut terminal, clock)
         .await

@@ -119,7 +119,7 @@ pub fn present<T: Clone>(table: &Option<T>, key: &str, files: &Files) -> Result<
     })
 }
 
-/// Reads `sim.toml`, with a second world file on top.
+/// Reads `sim.toml`; a second world file overrides some of its keys.
 ///
 /// # Errors
 /// Fails when a file cannot be read, is not TOML, has an unknown key or a value of the wrong type, or describes

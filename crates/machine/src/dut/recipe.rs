@@ -227,7 +227,7 @@ impl Recipe {
         self.device.infeasible(&self.limits, rig)
     }
 
-    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be
+    /// Returns the wiring in the smallest supply range that serves the recipe. The recipe must not be
     /// [infeasible](Self::infeasible); unchanged for a recipe that uses no supply.
     ///
     /// # Errors

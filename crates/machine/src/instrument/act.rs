@@ -75,7 +75,8 @@ pub enum Act {
     /// Runs programs on SCPI instruments: those of different instruments at the same time, those of one instrument in their
     /// order.
     Query(Vec<Query>),
-    /// Enables only these inputs of their converters; only before a lot.
+    /// Enables these inputs of their converters and no others. This writes EEPROM, so only a calibration does it,
+    /// before a lot.
     Mask(Vec<AnalogInput>),
     /// Stores the current time for [`Act::WaitSinceMark`].
     Mark,
@@ -121,7 +122,7 @@ pub enum Job {
     Restarts,
     /// See [`Act::Query`].
     Query(Vec<Query>),
-    /// Sets channel masks of converters; only before a lot.
+    /// See [`Act::Mask`].
     Mask(Vec<AnalogInput>),
 }
 
@@ -371,7 +372,8 @@ impl Runner {
         self.began = self.since;
     }
 
-    /// Stores the readings of the finished job, and moves on unless it still awaits a condition.
+    /// Stores the readings of the finished job, and moves to the next act unless the present one still awaits a
+    /// condition.
     fn keep(&mut self, delivered: &[Delivered], image: &Image, now: RigTime) -> Result<(), Unread> {
         match self.current.clone() {
             Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,

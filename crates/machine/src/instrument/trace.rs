@@ -85,7 +85,7 @@ impl Signal {
         }
     }
 
-    /// Returns the signal of an output (0 off, 1 on) or of a word of inputs, a bit each.
+    /// Returns the signal of an output (0 off, 1 on) or of a word of inputs, one bit each.
     pub const fn bits(name: &'static str) -> Self {
         Self {
             name,

@@ -7,7 +7,7 @@ use texts::Lang;
 
 /// Families of texts that the answer to `GET /` omits: they reach the page inside alarms, reasons and refusals, or
 /// appear in print only.
-const ELSEWHERE: [&str; 28] = [
+const ELSEWHERE: [&str; 29] = [
     "alarm",
     "card",
     "cause",
@@ -25,6 +25,7 @@ const ELSEWHERE: [&str; 28] = [
     "part_kind",
     "pin",
     "place",
+    "plan",
     "promise",
     "reason",
     "refusal",

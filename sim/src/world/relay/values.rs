@@ -224,7 +224,7 @@ impl RelayValues {
         self.ohm_scale * world.lot.nominal_coil_ohm
     }
 
-    /// Changes the winding at constant power: volts scale with the root of the ohms.
+    /// Changes the winding at constant power: volts scale with the square root of the ohms.
     fn change_winding(&mut self, factor: f64, world: &RelayWorld) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
         self.turns *= factor.sqrt();
@@ -240,7 +240,7 @@ impl RelayValues {
         }
     }
 
-    /// Returns the results that a relay with these values shows; an open coil counts as intact.
+    /// Returns the results that a relay with these values must show; an open coil counts as intact.
     pub fn fit_target(&self, world: &RelayWorld) -> FitTarget {
         let wound = self.nominal_ohm(world);
         FitTarget {

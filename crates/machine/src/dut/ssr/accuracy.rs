@@ -59,13 +59,16 @@ pub fn resistance(plan: &Plan, ohm: f64, heated_v: f64) -> Budget {
         .with_random("noise", noise_v / apart_a * 1e3)
 }
 
-/// Returns the budget of a drop at the rated current, V, from that of the resistance in milliohms.
-pub fn drop_at_rated(plan: &Plan, resistance: &Budget) -> Budget {
+/// Returns the budget of a drop at the rated current, V, from that of the resistance in milliohms. The rated current heats
+/// the output with the square of its ratio to the larger measuring current, which raised the drop by `rise_v`.
+pub fn drop_at_rated(plan: &Plan, resistance: &Budget, rise_v: f64) -> Budget {
     let mut budget = resistance.clone();
     for term in &mut budget.0 {
         term.u *= plan.rated_a / 1e3;
     }
-    budget
+    let ratio = plan.rated_a / plan.drop_a;
+    let hotter_v = rise_v.max(0.0) * ratio * (ratio * ratio - 1.0);
+    budget.with("heat at rated current", rectangular(hotter_v))
 }
 
 /// Returns the budget of a rise of the drop, mV. Offsets cancel.

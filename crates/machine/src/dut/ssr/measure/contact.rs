@@ -1,6 +1,7 @@
 //! Pins and short check: the probes are up, both probes of each pin touch it, and the output is not shorted.
 
 use super::board::{self, Position, RELAY};
+use super::discharge;
 use super::given::Given;
 use super::state::{Next, State};
 use crate::dut::record::TestRecord;
@@ -27,9 +28,11 @@ fn look(points: &Points, on: &[DigitalOut]) -> [Act; 3] {
     ]
 }
 
-/// Returns the acts of the Kelvin test.
+/// Returns the acts of the Kelvin test. The sources go off first, in case the test before could not prove it.
 pub fn acts(points: &Points) -> Vec<Act> {
-    look(points, &[DigitalOut::KelvinTest]).to_vec()
+    let mut acts = discharge::off_acts(points);
+    acts.extend(look(points, &[DigitalOut::KelvinTest]));
+    acts
 }
 
 /// Returns the acts of the short check: as the part lies, then reversed.

@@ -118,6 +118,9 @@ impl Test {
         let (plan, points) = (&self.device.plan, &self.device.points);
         let next = self.state.conclude(self.stage, plan, points, &readings);
         if self.stage.ends() {
+            if let Next::Insert(stage) = next {
+                self.stages.push_front(stage);
+            }
             return;
         }
         if self.state.record.stopped() {

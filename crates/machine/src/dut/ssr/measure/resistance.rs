@@ -52,7 +52,7 @@ pub fn conclude(state: &mut State, plan: &Plan, given: &Given) -> Result<Next, N
     let rise_v = last.iter().sum::<f64>() / LAST_DROPS as f64 - first_v;
     let ohm = (first_v - half_v) / (plan.drop_a / 2.0);
     let of_ohm = accuracy::resistance(plan, ohm, rise_v);
-    let of_drop = accuracy::drop_at_rated(plan, &of_ohm);
+    let of_drop = accuracy::drop_at_rated(plan, &of_ohm, rise_v);
     let of_rise = accuracy::drift(plan, rise_v);
     state.found([
         (Parameter::Drop, ohm * plan.rated_a, Unit::Volt, of_drop),

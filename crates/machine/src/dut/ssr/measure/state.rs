@@ -35,6 +35,8 @@ pub struct State {
     pub turn_on_v: Option<f64>,
     /// What the conformity tests have proven about limits.
     pub proven: Vec<(Parameter, Judgement)>,
+    /// Number of looks at the socket at the end of the test.
+    pub looks: u32,
     /// True once the socket is proven to be discharged and below 30 V.
     pub is_discharged: bool,
 }
