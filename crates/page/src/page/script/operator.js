@@ -19,14 +19,11 @@ function showLast(last) {
   showRecent(view.recent);
   const reasons = last ? reasonTexts(last) : [];
   at("reasons").replaceChildren(...reasons.slice(0, 3).map((text) => make("li", text)));
-  at("values").replaceChildren(...measuredKeys().map((key) => valueRow(key, last)));
+  at("values").replaceChildren(...measuredKeys(last).map((key) => valueRow(key, last)));
 }
 
-// Returns the characteristics that have limits in the recipe; before the first lot, all characteristics.
-function measuredKeys() {
-  const keys = keysOf((key) => Object.hasOwn(view.limits, key));
-  return keys.length ? keys : keysOf(() => true);
-}
+// Returns the characteristics that have limits in the recipe or a value of the last part; none before the first lot.
+const measuredKeys = (last) => keysOf((key) => Object.hasOwn(view.limits, key) || Object.hasOwn(last?.values ?? {}, key));
 
 function valueRow(key, last) {
   const [value, uncertainty] = last ? measured(last.values[key], last.uncertainty[key]) : [NONE, NONE];
