@@ -25,7 +25,7 @@
 //!     ..Filter::default()
 //! };
 //! for part in archive.query(&failed)? {
-//!     println!("{} went to bin {}", part.seq, part.bin);
+//!     println!("{} went to bin {}", part.seq, part.bin.unwrap_or_default());
 //! }
 //! # Ok::<(), history::HistoryError>(())
 //! ```

@@ -22,6 +22,7 @@
 //! let assembly = Assembly::new(elements, None, Tolerance::default(), Vec::new())?;
 //! let demands = Demands {
 //!     remove: vec!["relay".to_owned()],
+//!     stay: vec!["plate".to_owned()],
 //!     forbidden: ["+x", "-x", "+y", "-y"].map(|it| it.parse().unwrap()).to_vec(),
 //!     ..Demands::default()
 //! };
