@@ -81,6 +81,8 @@ quantity!(/** Length. */ Millimetre, "mm");
 pub enum Unit {
     /// A pure number, without unit.
     One,
+    /// A share, percent.
+    Percent,
     /// Resistance, ohm.
     Ohm,
     /// Resistance of contacts, milliohm.
@@ -101,6 +103,10 @@ pub enum Unit {
     VoltPerSecond,
     /// Inverse of a measuring current, milliohm per volt.
     MilliohmPerVolt,
+    /// Temperature, degree Celsius.
+    Celsius,
+    /// Difference of temperatures, kelvin.
+    Kelvin,
 }
 
 impl Unit {
@@ -108,6 +114,7 @@ impl Unit {
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::One => "1",
+            Self::Percent => "%",
             Self::Ohm => "ohm",
             Self::Milliohm => "mOhm",
             Self::Volt => "V",
@@ -118,6 +125,8 @@ impl Unit {
             Self::Microsecond => "us",
             Self::VoltPerSecond => "V/s",
             Self::MilliohmPerVolt => "mohm/V",
+            Self::Celsius => "C",
+            Self::Kelvin => "K",
         }
     }
 
@@ -129,12 +138,15 @@ impl Unit {
             Self::Microampere => "µA",
             Self::Microsecond => "µs",
             Self::MilliohmPerVolt => "mΩ/V",
+            Self::Celsius => "°C",
             Self::One
+            | Self::Percent
             | Self::Volt
             | Self::Millivolt
             | Self::Milliampere
             | Self::Millisecond
-            | Self::VoltPerSecond => self.symbol(),
+            | Self::VoltPerSecond
+            | Self::Kelvin => self.symbol(),
         }
     }
 }

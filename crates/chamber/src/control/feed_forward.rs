@@ -1,0 +1,91 @@
+//! Feed-forward with lag: the inverse of an identified chamber, and the gain that it learns on ramps.
+//!
+//! A chamber answers power like `K/(tau s + 1) + ki/s`. Its inverse turns the rate of the set point into power through
+//! one lag of `(K + ki tau)/ki`; losses and fan add what holds the temperature. On a steady heating ramp the ratio of the
+//! whole power to that of the feed-forward shows how strong the heater is today.
+
+use super::Task;
+use crate::ramp::SetPoint;
+use crate::tune::Identified;
+
+/// Shortest steady part of a ramp from which the gain is learnt, s.
+const LEAST_S: u32 = 90;
+/// First part of a ramp, which teaches nothing, s.
+const SETTLING_S: u32 = 60;
+/// Range of the learnt gain.
+const GAINS: [f64; 2] = [0.3, 3.0];
+
+/// State of the feed-forward, stepped once a second.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeedForward {
+    chamber: Identified,
+    /// Ratio of the power that the heater has to the identified one.
+    gain: f64,
+    lagged: f64,
+    last: f64,
+    lesson: Lesson,
+}
+
+/// Sums over the steady part of a ramp.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Lesson {
+    seconds: u32,
+    forward: f64,
+    power: f64,
+}
+
+impl FeedForward {
+    /// Makes the feed-forward of an identified chamber, with a gain of 1.
+    pub fn new(chamber: &Identified) -> Self {
+        Self {
+            chamber: *chamber,
+            gain: 1.0,
+            lagged: 0.0,
+            last: 0.0,
+            lesson: Lesson::default(),
+        }
+    }
+
+    /// Returns the learnt ratio of the power of the heater to the identified one, 0.3 to 3.
+    pub fn gain(&self) -> f64 {
+        self.gain
+    }
+
+    /// Returns the power that the set point needs, 1 = full heater.
+    pub fn step(&mut self, set: &SetPoint, ambient_c: f64) -> f64 {
+        let it = &self.chamber;
+        let wanted = (set.rate_k_per_s + it.time_constant_s * set.bend_k_per_s2) / it.slope_k_per_s;
+        let lag_s = it.gain_k / it.slope_k_per_s + it.time_constant_s;
+        self.lagged += (wanted - self.lagged) / lag_s.max(1.0);
+        let held = it.loss_per_k * (set.value_c - ambient_c) - it.fan;
+        self.last = (self.lagged + held) / self.gain;
+        self.last
+    }
+
+    /// Takes the power that was used in this second. At the end of a steady heating ramp learns the gain, and returns
+    /// by how much the power of the feed-forward drops; 0 at any other time.
+    pub fn learn(&mut self, set: &SetPoint, power: f64, task: &Task) -> f64 {
+        let steady =
+            set.cruises() && set.rate_k_per_s > 0.0 && power > task.lowest && power < task.highest;
+        if steady {
+            self.lesson.seconds += 1;
+            if self.lesson.seconds > SETTLING_S {
+                self.lesson.forward += self.last;
+                self.lesson.power += power;
+            }
+            return 0.0;
+        }
+        let Lesson {
+            seconds,
+            forward,
+            power,
+        } = std::mem::take(&mut self.lesson);
+        if seconds < LEAST_S + SETTLING_S || forward <= 0.0 || power <= 0.0 {
+            return 0.0;
+        }
+        let before = self.gain;
+        self.gain = (before * forward / power).clamp(GAINS[0], GAINS[1]);
+        let now = self.last * before / self.gain;
+        std::mem::replace(&mut self.last, now) - now
+    }
+}

@@ -1,0 +1,184 @@
+//! Identification run: rest, heat, coast, vent; stepped once a second.
+//!
+//! | stage | outputs | gives |
+//! |---|---|---|
+//! | rest | fan only | drift before the step |
+//! | heat | heater at the step | gain, time constant, delay, slope |
+//! | coast | fan only | losses and fan, together with the drift of the rest |
+//! | vent | vent open | power that the vent removes |
+//!
+//! The chamber starts near ambient; the run takes 15 minutes and heats by some 20 K.
+
+use super::fit;
+use super::response::Response;
+use super::{FirstOrder, Identified};
+use crate::control::split_range::Command;
+use crate::statistics::{mean, slope};
+
+/// Lengths of rest, heat, coast and vent, s.
+const LENGTHS_S: [usize; 4] = [180, 300, 300, 90];
+/// Stretch at the end of rest and coast that gives the drift, s.
+const DRIFT_S: usize = 120;
+/// Length of the response to which the first-order model is fitted, s.
+const FIRST_ORDER_S: usize = 120;
+/// Least delay of the first-order model, as a share of the delay of the whole response. With a quick sensor the model
+/// alone would show hardly any delay, and a loop that is tuned on it oscillates.
+const LEAST_DELAY: f64 = 0.65;
+/// Least delay of that model, s: sampling and the filter of the derivative.
+const LEAST_DELAY_S: f64 = 4.2;
+/// Least rise of the heat stage, K.
+const LEAST_RISE_K: f64 = 3.0;
+
+/// Why a run gives no figures.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum IdentifyError {
+    /// The chamber did not follow the heater.
+    #[error(
+        "found a rise of {found_k:.1} K at {power} of the heater, expected {LEAST_RISE_K} K or more"
+    )]
+    NoRise {
+        /// Rise, K.
+        found_k: f64,
+        /// Step of the heater.
+        power: f64,
+    },
+    /// The chamber became too hot for the experiment.
+    #[error("found {found_c:.1} C, expected at most {limit_c:.1} C")]
+    TooHot {
+        /// Temperature, C.
+        found_c: f64,
+        /// Limit, C.
+        limit_c: f64,
+    },
+    /// A reading is not a number.
+    #[error("found no reading of the control sensor in second {second}")]
+    NoReading {
+        /// Second of the run.
+        second: usize,
+    },
+}
+
+/// Answer of a run to one second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// Outputs until the next second.
+    Go(Command),
+    /// The run is over; outputs are off.
+    Done(Identified),
+}
+
+/// State of an identification run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identification {
+    power: f64,
+    ambient_c: f64,
+    limit_c: f64,
+    readings_c: Vec<f64>,
+}
+
+impl Identification {
+    /// Starts a run with a step of the heater (0 to 1), near ambient, with a temperature that it must not exceed.
+    pub fn new(power: f64, ambient_c: f64, limit_c: f64) -> Self {
+        let readings_c = Vec::with_capacity(LENGTHS_S.iter().sum());
+        Self {
+            power,
+            ambient_c,
+            limit_c,
+            readings_c,
+        }
+    }
+
+    /// Takes the reading of this second, C, and returns the outputs until the next one.
+    ///
+    /// # Errors
+    /// Fails when a reading is missing, when the chamber is too hot, or when it does not follow; the caller switches
+    /// off.
+    pub fn step(&mut self, measured_c: f64) -> Result<Step, IdentifyError> {
+        let second = self.readings_c.len();
+        if !measured_c.is_finite() {
+            return Err(IdentifyError::NoReading { second });
+        }
+        if measured_c > self.limit_c {
+            let (found_c, limit_c) = (measured_c, self.limit_c);
+            return Err(IdentifyError::TooHot { found_c, limit_c });
+        }
+        self.readings_c.push(measured_c);
+        let [rest, heat, coast, vent] = LENGTHS_S;
+        let heating = (rest..rest + heat).contains(&second);
+        let venting = second >= rest + heat + coast;
+        if second == rest + heat + coast + vent {
+            return self.figures().map(Step::Done);
+        }
+        Ok(Step::Go(Command {
+            heater: if heating { self.power } else { 0.0 },
+            vent: if venting { 1.0 } else { 0.0 },
+        }))
+    }
+
+    fn figures(&self) -> Result<Identified, IdentifyError> {
+        let [rest, heat, ..] = LENGTHS_S;
+        let drift = slope(&self.readings_c[rest - DRIFT_S..=rest]);
+        let start_c = mean(&self.readings_c[rest - 4..=rest]) + 2.0 * drift;
+        let rise =
+            |(second, found): (usize, &f64)| (found - start_c - drift * second as f64) / self.power;
+        let response: Vec<f64> = self.readings_c[rest..=rest + heat]
+            .iter()
+            .enumerate()
+            .map(rise)
+            .collect();
+        let found_k = response.last().copied().unwrap_or(0.0) * self.power;
+        if found_k < LEAST_RISE_K {
+            return Err(IdentifyError::NoRise {
+                found_k,
+                power: self.power,
+            });
+        }
+        let found = self.with_losses(&response, drift, start_c);
+        let end = rest + heat + LENGTHS_S[2];
+        let cooling = slope(&self.readings_c[end - DRIFT_S..=end]);
+        Ok(Identified {
+            vent_per_k: self.vent(&found, cooling),
+            ..found
+        })
+    }
+
+    /// Fits the response, and finds losses and fan from the drifts before and after the heat.
+    fn with_losses(&self, response: &[f64], drift: f64, start_c: f64) -> Identified {
+        let parts = fit::two_part(response);
+        let early = fit::first_order(&response[..=FIRST_ORDER_S]);
+        let end: usize = LENGTHS_S[..3].iter().sum();
+        let coast = &self.readings_c[end - DRIFT_S..=end];
+        let loss_per_k = (drift - slope(coast)) / parts.slope_k_per_s / (mean(coast) - start_c);
+        let fan = drift / parts.slope_k_per_s + loss_per_k * (start_c - self.ambient_c);
+        Identified {
+            gain_k: parts.gain_k,
+            time_constant_s: parts.time_constant_s,
+            delay_s: parts.delay_s,
+            slope_k_per_s: parts.slope_k_per_s,
+            loss_per_k: loss_per_k.max(0.0),
+            fan: fan.max(0.0),
+            vent_per_k: 0.0,
+            first_order: FirstOrder {
+                delay_s: early
+                    .delay_s
+                    .max(LEAST_DELAY * parts.delay_s)
+                    .max(LEAST_DELAY_S),
+                ..early
+            },
+        }
+    }
+
+    /// Returns the power that the open vent removes per kelvin above ambient, by least squares over the vent stage.
+    fn vent(&self, chamber: &Identified, cooling: f64) -> f64 {
+        let from = LENGTHS_S[..3].iter().sum::<usize>();
+        let mut model = Response::of(chamber);
+        let (mut modelled, mut over, mut under) = (0.0, 0.0, 0.0);
+        for (second, found_c) in self.readings_c[from..].iter().enumerate() {
+            let fell = self.readings_c[from] + cooling * second as f64 - found_c;
+            over += fell * modelled;
+            under += modelled * modelled;
+            modelled += model.step(found_c - self.ambient_c);
+        }
+        (over / under).max(0.0)
+    }
+}

@@ -1,0 +1,165 @@
+//! Checks of the two sensors of the air, which need no identified chamber; stepped once a second.
+
+use super::Trouble;
+use super::lasting::{Lasting, Recent};
+
+/// Largest step of a reading, K/s.
+const JUMP_K: f64 = 3.0;
+/// Difference of two sensors that is allowed at rest, K; a larger one must last for `DIFFER_S`.
+const DIFFER_K: f64 = 1.0;
+/// Further allowed difference per rate, K per K/min.
+const DIFFER_MIN: f64 = 0.1;
+const DIFFER_S: u32 = 10;
+/// A sensor counts as stuck when it moves by less than this within `STUCK_S` at more than `STUCK_POWER`, K.
+const STUCK_K: f64 = 0.02;
+const STUCK_S: usize = 60;
+const STUCK_POWER: f64 = 0.3;
+/// Rise without power that only a shorted power unit makes, K: air that the vent has cooled warms by less from its walls.
+const UNPOWERED_K: f64 = 10.0;
+/// Change within `RISE_S` that only a heater at full power makes, K: the step of an identification makes a third of it.
+const RISE_K: f64 = 15.0;
+const RISE_S: usize = 30;
+
+/// State of the checks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensors {
+    each: [Sensor; 2],
+    differ: Lasting,
+}
+
+/// Checks of one sensor.
+#[derive(Debug, Clone, PartialEq)]
+struct Sensor {
+    last_c: Option<f64>,
+    moved: Recent,
+}
+
+impl Sensor {
+    fn new() -> Self {
+        Self {
+            last_c: None,
+            moved: Recent::of(STUCK_S),
+        }
+    }
+
+    fn step(&mut self, reading_c: Option<f64>, power: f64) -> Option<Trouble> {
+        let Some(now_c) = reading_c else {
+            *self = Self::new();
+            return Some(Trouble::SensorBroken);
+        };
+        let last_c = self.last_c.replace(now_c).unwrap_or(now_c);
+        if power <= STUCK_POWER {
+            self.moved.clear();
+        }
+        self.moved.push(now_c);
+        if (now_c - last_c).abs() > JUMP_K {
+            return Some(Trouble::SensorJump);
+        }
+        let range_k = self.moved.range();
+        range_k
+            .is_some_and(|it| it < STUCK_K)
+            .then_some(Trouble::SensorStuck)
+    }
+}
+
+impl Default for Sensors {
+    fn default() -> Self {
+        Self {
+            each: [Sensor::new(), Sensor::new()],
+            differ: Lasting::of(DIFFER_S),
+        }
+    }
+}
+
+impl Sensors {
+    /// Checks a second: readings of control and reference sensor, C, the fastest rate at which the air may move now,
+    /// K/min, and the power of the heater, 0 to 1. A reading that is not finite counts as missing.
+    pub fn step(
+        &mut self,
+        readings_c: [Option<f64>; 2],
+        rate_k_per_min: f64,
+        power: f64,
+    ) -> Vec<Trouble> {
+        let readings = readings_c.map(|it| it.filter(|it| it.is_finite()));
+        let mut found: Vec<Trouble> = self
+            .each
+            .iter_mut()
+            .zip(readings)
+            .filter_map(|(sensor, reading)| sensor.step(reading, power))
+            .collect();
+        let [control_c, reference_c] = readings;
+        let apart_k = control_c.zip(reference_c).map(|(a, b)| (a - b).abs());
+        let apart = apart_k.is_some_and(|it| it > DIFFER_K + DIFFER_MIN * rate_k_per_min);
+        found.extend(self.differ.step(apart).then_some(Trouble::SensorsDiffer));
+        found
+    }
+}
+
+/// Watches a chamber whose heater is off or weak and whose answer to power need not be known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unpowered {
+    highest_c: Option<f64>,
+    recent: Recent,
+}
+
+impl Default for Unpowered {
+    fn default() -> Self {
+        Self {
+            highest_c: None,
+            recent: Recent::of(RISE_S),
+        }
+    }
+}
+
+impl Unpowered {
+    /// Takes a reading and the power of that second; returns true when the chamber heats without power: it is 10 K above
+    /// its highest reading up to the first second without power, or moves by 15 K in 30 s.
+    pub fn step(&mut self, reading_c: f64, power: f64) -> bool {
+        let highest_c = *self.highest_c.get_or_insert(reading_c);
+        if power > 0.0 {
+            self.highest_c = Some(highest_c.max(reading_c));
+        }
+        self.recent.push(reading_c);
+        let races = self.recent.range().is_some_and(|it| it > RISE_K);
+        races || power == 0.0 && reading_c > highest_c + UNPOWERED_K
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heat_without_power_shows_within_ten_kelvin() {
+        let mut watch = Unpowered::default();
+        assert!(!watch.step(25.0, 0.0) && !watch.step(34.0, 0.0));
+        assert!(watch.step(35.5, 0.0));
+    }
+
+    #[test]
+    fn a_heated_chamber_may_stay_as_hot_as_it_was() {
+        let mut watch = Unpowered::default();
+        assert!(!watch.step(25.0, 0.15) && !watch.step(47.0, 0.15));
+        assert!(!watch.step(56.0, 0.0));
+        assert!(watch.step(57.5, 0.0));
+    }
+
+    #[test]
+    fn a_race_under_weak_power_shows_within_half_a_minute() {
+        let mut watch = Unpowered::default();
+        let found = (0..60).position(|it| watch.step(25.0 + f64::from(it), 0.15));
+        assert_eq!(found, Some(30));
+        let mut watch = Unpowered::default();
+        assert!(!(0..60).any(|it| watch.step(25.0 + 0.3 * f64::from(it), 0.15)));
+    }
+
+    #[test]
+    fn sensors_that_disagree_for_ten_seconds_are_found() {
+        let mut sensors = Sensors::default();
+        let second = |sensors: &mut Sensors| sensors.step([Some(40.0), Some(42.2)], 10.0, 0.1);
+        for _ in 0..9 {
+            assert_eq!(second(&mut sensors), []);
+        }
+        assert_eq!(second(&mut sensors), [Trouble::SensorsDiffer]);
+    }
+}
