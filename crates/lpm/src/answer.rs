@@ -16,6 +16,12 @@ impl ElementKey {
         slot: u32::MAX,
         generation: u32::MAX,
     };
+
+    /// Returns the place of the element in the model. Elements of [`Model::of`](super::Model::of) have places from 0 in
+    /// their order; an element inserted later gets the place of a removed one, or the next free place.
+    pub fn place(self) -> usize {
+        self.slot as usize
+    }
 }
 
 /// A move of one mover. With equal rotations at start and end it is a straight translation; otherwise the position

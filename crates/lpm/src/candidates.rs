@@ -1,7 +1,7 @@
 //! Collects the stationary pieces whose boxes the mover meets, and returns them in the order in which it meets the
 //! boxes. A piece that lies in several cells of the grid appears once per cell.
 
-use super::space::LANES;
+use super::space::{Bundle, LANES, Onset};
 
 /// Greatest number of candidates kept. When there are more, some are checked out of order, which costs time but changes
 /// no answer.
@@ -11,28 +11,21 @@ const MOST: usize = 32;
 #[derive(Debug, Clone)]
 pub(crate) struct Candidates {
     /// High half: fraction of the path before which the mover does not meet the piece, as bits of an f32 (never
-    /// negative, so the bits sort like numbers). Low half: [`Place`] of the piece.
+    /// negative, so the bits sort like numbers). Low half: number of the piece. Places that are not in use hold
+    /// [`FREE`].
     keys: [u64; MOST],
+    /// Number of places used since the candidates were last empty, the first ones.
     count: usize,
 }
 
-/// Place of a candidate: number of its bundle ([`LANES`] pieces that are tested together), and its lane in the bundle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place(u32);
-
-impl Place {
-    pub(crate) fn bundle(self) -> u32 {
-        self.0 / LANES as u32
-    }
-
-    pub(crate) fn lane(self) -> usize {
-        self.0 as usize % LANES
-    }
-}
+/// Key of a place that is not in use, beyond every other key.
+const FREE: u64 = u64::MAX;
+/// Number of keys that are compared without a branch between them.
+const BLOCK: usize = 4;
 
 impl Candidates {
     pub(crate) const NONE: Candidates = Candidates {
-        keys: [0; MOST],
+        keys: [FREE; MOST],
         count: 0,
     };
 
@@ -45,37 +38,46 @@ impl Candidates {
     /// Adds the lanes of a bundle that `lanes` marks, usually one or two. The caller ensures that there is room
     /// ([`Self::is_full`]).
     #[inline]
-    pub(crate) fn push(&mut self, bundle: u32, lanes: u32, entry: &[f32; LANES]) {
-        let place = u64::from(bundle * LANES as u32);
+    pub(crate) fn push(&mut self, bundle: &Bundle, lanes: u32, onset: &Onset) {
         let mut left = lanes;
         while left != 0 {
             let lane = left.trailing_zeros() as usize % LANES;
             left &= left - 1;
-            let key = u64::from(entry[lane].to_bits()) << 32 | (place + lane as u64);
-            self.keys[self.count % MOST] = key;
-            self.count += 1;
+            self.add(bundle.entry(lane, onset), bundle.piece(lane));
         }
+    }
+
+    #[inline]
+    fn add(&mut self, entry: f32, piece: u32) {
+        self.keys[self.count % MOST] = u64::from(entry.to_bits()) << 32 | u64::from(piece);
+        self.count += 1;
     }
 
     /// Removes and returns the candidate met earliest; when the mover meets even this one after `until`, drops all
     /// candidates and returns `None`.
+    ///
+    /// Compares whole blocks and removes all keys that are equal, those of one piece in several cells, because the
+    /// number of candidates and the place of the least key are unpredictable.
     #[inline]
-    pub(crate) fn earliest(&mut self, until: f64) -> Option<Place> {
-        let known = &mut self.keys[..self.count.min(MOST)];
-        let mut first = 0;
-        let mut least = *known.first()?;
-        for (at, key) in known.iter().enumerate() {
-            if *key < least {
-                (first, least) = (at, *key);
-            }
+    pub(crate) fn earliest(&mut self, until: f64) -> Option<u32> {
+        if self.count == 0 {
+            return None;
         }
-        if f64::from(f32::from_bits((least >> 32) as u32)) > until {
+        let used = self.count.min(MOST).div_ceil(BLOCK);
+        let blocks = &mut self.keys.as_chunks_mut::<BLOCK>().0[..used];
+        let least_of = |block: &[u64; BLOCK]| block.iter().copied().fold(FREE, u64::min);
+        let least = blocks.iter().map(least_of).fold(FREE, u64::min);
+        // The entry of a free place is not a number, so it never counts.
+        let counts = f64::from(f32::from_bits((least >> 32) as u32)) <= until;
+        if !counts {
+            blocks.fill([FREE; BLOCK]);
             self.count = 0;
             return None;
         }
-        known[first] = *known.last()?;
-        self.count -= 1;
-        Some(Place(least as u32))
+        for key in blocks.iter_mut().flatten() {
+            *key |= if *key == least { FREE } else { 0 };
+        }
+        Some(least as u32)
     }
 }
 
@@ -86,15 +88,20 @@ mod tests {
     #[test]
     fn candidates_come_in_order_of_entry_up_to_until() {
         let mut candidates = Candidates::NONE;
-        candidates.push(
-            3,
-            0b0101_1111,
-            &[0.5, 0.0, 1e-30, 0.75, 0.25, 0.0, 0.3, 0.0],
-        );
-        candidates.push(9, 0b1000_0000, &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.4]);
-        let places = std::iter::from_fn(|| candidates.earliest(0.5));
-        let places: Vec<_> = places.map(|place| (place.bundle(), place.lane())).collect();
-        assert_eq!(places, [(3, 1), (3, 2), (3, 4), (3, 6), (9, 7), (3, 0)]);
+        // Piece 3 lies in two cells.
+        for (entry, piece) in [
+            (0.5, 3),
+            (0.5, 3),
+            (0.0, 8),
+            (1e-30, 1),
+            (0.75, 2),
+            (0.25, 5),
+            (0.4, 9),
+        ] {
+            candidates.add(entry, piece);
+        }
+        let pieces: Vec<u32> = std::iter::from_fn(|| candidates.earliest(0.5)).collect();
+        assert_eq!(pieces, [8, 1, 5, 9, 3]);
         assert_eq!(candidates.earliest(1.0), None);
     }
 }

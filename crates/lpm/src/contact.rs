@@ -5,14 +5,15 @@
 //! The search takes the pairs on the list in the order in which their boxes meet: a contact shortens the path for all
 //! later pairs, so this order finds the first contact soonest.
 
+use super::answer::ElementKey;
 use super::candidates::Candidates;
 use super::distance::Gap;
 use super::meeting::{Meeting, Run};
 use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending};
 use super::prism::Prism;
-use super::space::{Boxes, Bundle, Cover, LANES, Sweep, Visit, above};
-use super::stationary::Stored;
+use super::space::{Boxes, Bundle, LANES, Onset, Sweep, Visit, above};
+use super::stationary::{Stationary, Stored};
 use super::straight::{self, Hit};
 use super::touch::touch;
 use super::vector::sub;
@@ -94,8 +95,8 @@ impl Passage<'_> {
 pub(crate) struct Findings<'a> {
     wanted: Wanted,
     pub(crate) best: Option<Found>,
-    /// Numbers of the stationary pieces met, for [`Wanted::Every`]; a piece may be listed more than once.
-    pub(crate) met: Vec<u32>,
+    /// Elements met, for [`Wanted::Every`]; an element may be listed more than once.
+    pub(crate) met: Vec<ElementKey>,
     pub(crate) pending: Vec<Pending>,
     /// The straight path with the reciprocals of its displacement, computed when first needed.
     run: Option<Run<'a>>,
@@ -105,10 +106,16 @@ impl Findings<'_> {
     /// Starts with no contact found; `wanted` says which contact the question asks for.
     #[inline]
     pub(crate) fn wanted(wanted: Wanted) -> Self {
+        Self::into(wanted, Vec::new())
+    }
+
+    /// Makes the same search, which lists elements in `met`; `met` must be empty. Questions can so share its memory.
+    #[inline]
+    pub(crate) fn into(wanted: Wanted, met: Vec<ElementKey>) -> Self {
         Findings {
             wanted,
             best: None,
-            met: Vec::new(),
+            met,
             pending: Vec::new(),
             run: None,
         }
@@ -126,9 +133,9 @@ impl Findings<'_> {
     }
 
     #[inline]
-    pub(crate) fn offer(&mut self, found: Option<Found>) {
+    pub(crate) fn offer(&mut self, found: Option<Found>, owner: ElementKey) {
         if self.wanted == Wanted::Every {
-            self.met.extend(found.map(|found| found.element));
+            self.met.extend(found.map(|_| owner));
         } else if let Some(found) = found
             && self.best.as_ref().is_none_or(|known| found.t < known.t)
         {
@@ -148,6 +155,35 @@ struct Search<'a, 'b> {
     /// The group's pieces at the start of the path; the search computes each when it first needs it.
     prisms: [Option<Prism>; MOST_OF_A_GROUP],
     candidates: Candidates,
+    recent: Recent,
+}
+
+/// Number of pieces that [`Recent`] remembers: as many as squares lie side by side across a path.
+const REMEMBERED: usize = 16;
+
+/// The pieces checked last, for [`Wanted::Every`]. The walk shows a piece once for each of its squares, in close
+/// succession.
+struct Recent {
+    pieces: [u32; REMEMBERED],
+    next: usize,
+}
+
+impl Recent {
+    const NONE: Recent = Recent {
+        pieces: [u32::MAX; REMEMBERED],
+        next: 0,
+    };
+
+    /// Remembers a piece; returns false when it is remembered already.
+    #[inline]
+    fn is_new(&mut self, piece: u32) -> bool {
+        let known = (self.pieces.iter()).fold(false, |known, it| known | (*it == piece));
+        if !known {
+            self.pieces[self.next % REMEMBERED] = piece;
+            self.next += 1;
+        }
+        !known
+    }
 }
 
 impl Visit for Search<'_, '_> {
@@ -159,24 +195,29 @@ impl Visit for Search<'_, '_> {
     }
 
     #[inline]
-    fn bundle(
-        &mut self,
-        (number, bundle): (u32, &Bundle),
-        lanes: u32,
-        entry: &[f32; LANES],
-    ) -> bool {
-        if self.in_order() {
+    fn bundle(&mut self, bundle: &Bundle, lanes: u32, onset: Option<&Onset>) -> bool {
+        if let Some(onset) = onset {
             if self.candidates.is_full() && self.pause() < 0.0 {
                 return true;
             }
-            self.candidates.push(number, lanes, entry);
+            self.candidates.push(bundle, lanes, onset);
             return false;
         }
         let mut left = lanes;
+        let is_every = self.found.wanted == Wanted::Every;
         while left != 0 {
             let lane = left.trailing_zeros() as usize % LANES;
             left &= left - 1;
-            self.piece(bundle.piece(lane), &bundle.cover(lane));
+            let piece = bundle.piece(lane);
+            if is_every && !self.recent.is_new(piece) {
+                continue;
+            }
+            if is_every && self.group.count == 1 {
+                // The walk has compared the boxes of the only piece already.
+                self.judge(0.0, (piece, self.passage.element(piece)), 0);
+            } else {
+                self.piece(piece);
+            }
             if self.found.until() < 0.0 {
                 return true;
             }
@@ -186,15 +227,8 @@ impl Visit for Search<'_, '_> {
 
     #[inline]
     fn pause(&mut self) -> f64 {
-        let mut last = None;
-        while let Some(place) = self.candidates.earliest(self.found.until()) {
-            let bundle = self.passage.model.space.bundle(place.bundle());
-            let piece = bundle.piece(place.lane());
-            // The entries of a piece that lies in several cells are equally early and therefore adjacent.
-            if last != Some(piece) {
-                last = Some(piece);
-                self.piece(piece, &bundle.cover(place.lane()));
-            }
+        while let Some(piece) = self.candidates.earliest(self.found.until()) {
+            self.piece(piece);
         }
         self.found.until()
     }
@@ -216,33 +250,34 @@ impl<'a, 'b> Search<'a, 'b> {
             boxes: None,
             prisms: [None; MOST_OF_A_GROUP],
             candidates: Candidates::NONE,
+            recent: Recent::NONE,
         }
     }
 
     /// Checks this stationary piece against the pieces of the group whose boxes meet its box.
     #[inline]
-    fn piece(&mut self, element: u32, cover: &Cover) {
+    fn piece(&mut self, number: u32) {
         let until = self.found.until();
         let (passage, margin) = (self.passage, self.passage.way.margin_mm);
         let boxes = self
             .boxes
             .get_or_insert_with(|| self.group.boxes(&passage.whereabouts(margin)));
-        let crossing = boxes.crossing(cover, &self.sweep.pace.reversed(), above(until));
+        let element = passage.element(number);
+        let crossing = boxes.crossing(&element.cover(), &self.sweep.pace.reversed(), above(until));
         let mut places = crossing.lanes & self.group.used();
         while places != 0 {
             let place = places.trailing_zeros() as usize % MOST_OF_A_GROUP;
             places &= places - 1;
             let entry = f64::from(crossing.entry[place]);
             if entry <= self.found.until() {
-                self.judge(entry, element, place);
+                self.judge(entry, (number, element), place);
             }
         }
     }
 
     #[inline]
-    fn judge(&mut self, entry: f64, number: u32, place: usize) {
+    fn judge(&mut self, entry: f64, (number, element): (u32, &Stationary), place: usize) {
         let passage = self.passage;
-        let element = passage.element(number);
         if !passage.counts(element) {
             return;
         }
@@ -254,14 +289,21 @@ impl<'a, 'b> Search<'a, 'b> {
                     self.prisms[place].get_or_insert_with(|| own.carried(path.turned(), path.from));
                 let until = self.found.until();
                 let run = self.found.run.get_or_insert_with(|| Run::of(path));
+                if self.found.wanted == Wanted::Every && passage.way.margin_mm == 0.0 {
+                    if Meeting::new(fixed, mover, run, 0.0).is_any() {
+                        self.found.met.push(element.owner);
+                    }
+                    return;
+                }
                 let found = passage.met(run, fixed, mover, until);
-                self.found.offer(found.map(|(t, gap)| Found {
+                let found = found.map(|(t, gap)| Found {
                     t,
                     element: number,
                     evidence: gap.map_or(Evidence::Closed(local as u32), |gap| {
                         Evidence::Searched(Box::new(gap))
                     }),
-                }));
+                });
+                self.found.offer(found, element.owner);
             }
             _ => self.found.pending.push(Pending {
                 order: entry,

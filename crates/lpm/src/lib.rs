@@ -30,7 +30,7 @@
 //! | `question`, `answer`, `permission` | the questions, their answers, permissions of pairs |
 //! | `shape`, `pose`, `piece`, `prism`, `mover`, `interior` | a body: as given, as convex pieces, as upright prisms, as a mover, its enclosed spaces |
 //! | `path`, `passage` | the path of a mover, alone and through a model |
-//! | `space`, `candidates` | broad phase: `layers` holds Omega and `{h1, h2}`, `grid` holds `V`, `silhouettes` holds `B` |
+//! | `space`, `candidates` | broad phase: `layers` holds Omega and `{h1, h2}`, `grid` holds `V`, `silhouettes` and `codes` hold `B` |
 //! | `rest`, `meeting`, `touch`, `grazing` | upright pieces in closed form: at rest, on a straight path, place of contact, grazing contacts |
 //! | `straight`, `turning`, `distance` | any convex pieces: translations, turns, separating planes |
 //! | `contact`, `search`, `nearest` | searches for any contact, for the first contact, and for the least distance |
@@ -65,7 +65,8 @@
 //!    stretch ends where this separation reaches the margin, and stretches follow each other without a gap.
 //! 4. When the broad phase drops a pair, the boxes of its pieces never overlap during the move. These boxes are rounded
 //!    outward by the same error bound and then to single precision. Every place that the broad phase computes along the
-//!    path carries `space::sweep::SLACK_MM`, and rounding heights to layers keeps their order.
+//!    path carries `space::sweep::SLACK_MM`. Rounding places and heights to codes and to layers keeps their order, for
+//!    pieces and mover alike.
 //! 5. `solid` finds a body inside a closed mesh, and counts a doubtful body as inside; `closed` finds the closed
 //!    surfaces of a mesh, however untidy its file is.
 //! 6. A comparison with NaN is false, and every comparison is written so that false means blocked. Iteration limits,
@@ -88,7 +89,8 @@
 //! | `distance::RESOLUTION_MM` | 1e-9 mm | where a search for a plane stops |
 //! | `space::sweep::SLACK_MM` | 1e-5 mm | places along the path in the broad phase; costs candidates, changes no answer |
 //! | `space::cover::ULP` | 1.2e-7, relative | rounding outward to f32; changes no answer |
-//! | `mover::SINGLE`, `space::boxes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32; changes no answer |
+//! | `space::codes` | steps of 1/32 mm in squares up to 1.9 m, coarser on larger plates | silhouettes as whole numbers of 16 bits; costs candidates, changes no answer |
+//! | `mover::SINGLE`, `space::boxes::EARLIER`, `space::codes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32; changes no answer |
 //! | `pose::NEARLY_UNIT` | 1e-9 | deviation from 1 of the squared length of a quaternion whose yaw is taken without a division, for boxes only; within `mover::SINGLE` |
 //! | `space::sweep::SLOWEST_MM` | 1e-9 mm | displacement along an axis that counts as rest; changes no answer |
 //! | `closed::WELD_MM` | 1e-6 mm | corners that count as one when closed surfaces are sought |

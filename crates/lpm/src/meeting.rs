@@ -97,17 +97,42 @@ impl<'a> Meeting<'a> {
     /// proof that there is none; NaN counts as contact.
     #[inline]
     pub(crate) fn first(&self, until: f64) -> Option<f64> {
+        let window = self.heights(until)?;
+        match self.framed() {
+            Some(framed) => self.rounded(window, framed),
+            None => self.octagon(window),
+        }
+    }
+
+    /// Returns true when [`Self::first`] finds a fraction on the whole path.
+    #[inline]
+    pub(crate) fn is_any(&self) -> bool {
+        let found = |window| match self.framed() {
+            Some(framed) => self.grown_figures(window, framed),
+            None => self.octagon(window),
+        };
+        self.heights(1.0).and_then(found).is_some()
+    }
+
+    /// Returns the part of the path, up to `until`, on which the heights are within the margin.
+    #[inline]
+    fn heights(&self, until: f64) -> Option<Window> {
         let heights = self.element.half[2] + self.mover.half[2];
-        let window = slab(
+        slab(
             (0.0, until),
             self.apart[2],
             (self.run.way[2], self.run.pace[2]),
             heights + self.grown,
-        )?;
+        )
+    }
+
+    /// Returns the footprint whose axes the sum of both has; `None` for two rectangles turned against each other.
+    #[inline]
+    fn framed(&self) -> Option<&'a Prism> {
         match (self.element.radius > 0.0, self.mover.radius > 0.0) {
-            (false, false) if self.element.axis != self.mover.axis => self.octagon(window),
-            (true, false) => self.rounded(window, self.mover),
-            (false, _) | (true, true) => self.rounded(window, self.element),
+            (false, false) if self.element.axis != self.mover.axis => None,
+            (true, false) => Some(self.mover),
+            (false, _) | (true, true) => Some(self.element),
         }
     }
 
@@ -115,6 +140,17 @@ impl<'a> Meeting<'a> {
     /// margin.
     #[inline]
     fn rounded(&self, window: Window, framed: &Prism) -> Option<f64> {
+        let t = self.grown_figures(window, framed)?;
+        let radius = self.element.radius + self.mover.radius;
+        if radius == 0.0 && self.grown == self.slack {
+            return Some(t);
+        }
+        Some(self.grazed(framed, t).unwrap_or(t))
+    }
+
+    /// Does the same for the grown figures: without refining a grazing contact.
+    #[inline]
+    fn grown_figures(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
         let half = self.halves();
         let p = framed.along(self.apart);
@@ -126,8 +162,7 @@ impl<'a> Meeting<'a> {
             return Some(window.0);
         }
         let v = [rates[0].0, rates[1].0];
-        let t = corner(window, p, v, half, reach + self.slack)?;
-        Some(self.grazed(framed, t).unwrap_or(t))
+        corner(window, p, v, half, reach + self.slack)
     }
 
     /// Returns the fraction in double-double precision, never before `t`, at which the grown figures meet. `None`

@@ -132,7 +132,7 @@ impl Model {
             self.hollow.retain(|known| *known != key.slot);
         }
         while piece != NONE {
-            self.space.remove(piece);
+            self.space.remove(piece, &self.pieces.at(piece).cover());
             piece = self.pieces.remove(piece);
         }
         self.free.push(key.slot);

@@ -2,7 +2,7 @@
 
 use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending, once_in_order};
-use super::space::{Bundle, Cover, LANES, Sweep, Visit};
+use super::space::{Bundle, Cover, LANES, Onset, Sweep, Visit};
 use super::straight;
 use super::turning::Turning;
 
@@ -31,14 +31,15 @@ impl Visit for Near<'_> {
         false
     }
 
-    fn bundle(&mut self, (_, bundle): (u32, &Bundle), lanes: u32, _: &[f32; LANES]) -> bool {
+    fn bundle(&mut self, bundle: &Bundle, lanes: u32, _: Option<&Onset>) -> bool {
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-            let (element, cover) = (bundle.piece(lane), bundle.cover(lane));
-            if !self.passage.counts(self.passage.element(element)) {
+            let element = bundle.piece(lane);
+            let stationary = self.passage.element(element);
+            if !self.passage.counts(stationary) {
                 continue;
             }
             for (place, own) in self.covers[..self.group.count].iter().enumerate() {
-                let order = own.distance(&cover);
+                let order = own.distance(&stationary.cover());
                 if order <= self.range_mm {
                     self.pending.push(Pending {
                         order,

@@ -32,19 +32,34 @@ impl Model {
     ///
     /// For a move that cannot be decided, the only entry is [`ElementKey::UNDECIDABLE`].
     pub fn every_hit(&self, mover: &impl Moving, way: &Move) -> Vec<ElementKey> {
-        let answer = mover.with_mover(|body| self.all_on_the_way(body, way));
-        answer
-            .flatten()
-            .unwrap_or_else(|| vec![ElementKey::UNDECIDABLE])
+        let mut hits = Vec::new();
+        self.list_hits(mover, way, &mut hits);
+        hits
     }
 
-    fn all_on_the_way(&self, body: &Mover, way: &Move) -> Option<Vec<ElementKey>> {
+    /// Replaces the content of `hits` by the answer of [`Model::every_hit`], so that many questions can share its
+    /// memory.
+    pub fn list_hits(&self, mover: &impl Moving, way: &Move, hits: &mut Vec<ElementKey>) {
+        let mut listed = std::mem::take(hits);
+        listed.clear();
+        let answer = mover.with_mover(|body| self.all_on_the_way(body, way, listed));
+        *hits = answer
+            .flatten()
+            .unwrap_or_else(|| vec![ElementKey::UNDECIDABLE]);
+    }
+
+    fn all_on_the_way(
+        &self,
+        body: &Mover,
+        way: &Move,
+        listed: Vec<ElementKey>,
+    ) -> Option<Vec<ElementKey>> {
         let path = Path::of(way);
         let path = path.as_ref()?;
         let passage = Passage::new(self, body, path, way);
-        let mut found = Findings::wanted(Wanted::Every);
+        let mut found = Findings::into(Wanted::Every, listed);
         passage.contact(&mut found);
-        let mut hits: Vec<ElementKey> = found.met.iter().map(|it| self.owner(*it)).collect();
+        let mut hits = found.met;
         if self.may_enclose(body) {
             let enclosed = self.holding(body, way);
             hits.extend(enclosed.map(|(piece, _)| self.owner(piece)));

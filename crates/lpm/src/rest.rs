@@ -14,7 +14,7 @@ use super::pose::{RoughYaw, Yaw};
 use super::prism::Prism;
 use super::shape::is_turn;
 use super::space::LANES;
-use super::stationary::Stored;
+use super::stationary::{Stationary, Stored};
 use super::touch::lie_apart;
 use super::vector::{Vec3, add, reach, sub};
 
@@ -98,11 +98,12 @@ impl Rest<'_> {
                 while lanes != 0 {
                     let lane = lanes.trailing_zeros() as usize % LANES;
                     lanes &= lanes - 1;
-                    let places = boxes.meeting(&bundle.cover(lane)) & group.used();
+                    let element = self.model.pieces.at(bundle.piece(lane));
+                    let places = boxes.meeting(&element.cover()) & group.used();
                     if places == 0 {
                         continue;
                     }
-                    match self.judged::<Q>(bundle.piece(lane), (group, places), yaw) {
+                    match self.judged::<Q>(element, (group, places), yaw) {
                         Judged::Clear => {}
                         Judged::NotUpright => is_said = false,
                         Judged::Met(answer) => return answer,
@@ -121,11 +122,10 @@ impl Rest<'_> {
     #[inline(always)]
     fn judged<Q: Question>(
         &self,
-        number: u32,
+        element: &Stationary,
         (group, mut places): (&Group, u32),
         yaw: Option<Yaw>,
     ) -> Judged<Q::Answer> {
-        let element = self.model.pieces.at(number);
         if !self.way.ignore.is_empty() && self.way.ignore.contains(&element.owner) {
             return Judged::Clear;
         }

@@ -18,7 +18,7 @@ impl Passage<'_> {
                 return;
             }
             let searched = self.searched(&pair, found.until());
-            found.offer(searched);
+            found.offer(searched, self.element(pair.element).owner);
         }
     }
 

@@ -13,14 +13,28 @@ use super::space::{Cover, Entering};
 /// Number that stands for no piece.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// A placed stationary piece.
+/// A placed stationary piece, in two cache lines.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 pub(crate) struct Stationary {
+    /// Least and greatest corner of the box around the piece, mm.
+    corners: [[f32; 3]; 2],
     pub(crate) form: Stored,
     /// The element to which the piece belongs.
     pub(crate) owner: ElementKey,
     /// Number of another piece of the same element, or [`NONE`].
     pub(crate) sibling: u32,
+}
+
+const _: () = assert!(size_of::<Stationary>() == 128, "two cache lines");
+
+impl Stationary {
+    /// Returns the box around the piece.
+    #[inline(always)]
+    pub(crate) fn cover(&self) -> Cover {
+        let [low, high] = self.corners.map(|[x, y, z]| [x, y, z, 0.0]);
+        Cover { low, high }
+    }
 }
 
 /// How a piece is stored.
@@ -82,6 +96,7 @@ impl Pieces {
         sibling: u32,
     ) -> u32 {
         let stationary = Stationary {
+            corners: [cover.low, cover.high].map(|[x, y, z, _]| [x, y, z]),
             form,
             owner,
             sibling,

@@ -229,28 +229,39 @@ impl Assembly {
         from: [f64; 3],
         way: [f64; 3],
     ) -> Result<Vec<u32>, PlanError> {
+        let mut met = Vec::new();
+        self.add_met((number, from, way), &mut Vec::new(), &mut met)?;
+        Ok(met)
+    }
+
+    /// Adds the result of [`Assembly::met`] to `met`. `hits` is memory that many questions share.
+    ///
+    /// # Errors
+    /// Fails when the collision core cannot decide the move.
+    pub(crate) fn add_met(
+        &self,
+        (number, from, way): (usize, [f64; 3], [f64; 3]),
+        hits: &mut Vec<ElementKey>,
+        met: &mut Vec<u32>,
+    ) -> Result<(), PlanError> {
         let to = [0, 1, 2].map(|axis| from[axis] + way[axis]);
-        let hits = self.model.every_hit(
-            self.mover(number),
-            &Move {
-                from: self.pose(number, from),
-                to: self.pose(number, to),
-                margin_mm: 0.0,
-                ignore: &[self.keys[number]],
-            },
-        );
-        // The keys are in the order of the elements, since nothing was ever removed from the model.
-        let numbers = hits.iter().map(|hit| {
-            let found = self.keys.binary_search(hit);
-            found
-                .map(|at| at as u32)
-                .map_err(|_| PlanError::Undecidable {
-                    id: self.id(number).to_owned(),
-                })
-        });
-        let mut numbers: Vec<u32> = numbers.collect::<Result<_, _>>()?;
-        numbers.retain(|other| !self.is_guided(number, *other as usize));
-        Ok(numbers)
+        let way = Move {
+            from: self.pose(number, from),
+            to: self.pose(number, to),
+            margin_mm: 0.0,
+            ignore: &[self.keys[number]],
+        };
+        self.model.list_hits(self.mover(number), &way, hits);
+        // Nothing is ever removed from the model, so the place of an element is its number.
+        if hits.last().is_some_and(|hit| hit.place() >= self.len()) {
+            return Err(PlanError::Undecidable {
+                id: self.id(number).to_owned(),
+            });
+        }
+        let counts = |other: &usize| !self.is_guided(number, *other);
+        let others = hits.iter().map(|hit| hit.place()).filter(counts);
+        met.extend(others.map(|it| it as u32));
+        Ok(())
     }
 
     /// Returns the elements that block an element in a direction because they guide it along another axis.

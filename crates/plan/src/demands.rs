@@ -18,7 +18,8 @@ pub struct Demands {
     /// True when only straight ways and single units are wanted: no ways of two steps, no subassemblies that are found.
     pub straight_only: bool,
     /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element rests
-    /// on what holds it from below.
+    /// on what holds it from below. Two that hold each other from below, such as a rod in its cylinder, do not rest on
+    /// each other.
     pub keeps_supports: bool,
 }
 

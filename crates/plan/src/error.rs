@@ -31,8 +31,9 @@ pub enum PlanError {
     },
     /// An element reaches out of the space in which the plan is made.
     #[error(
-        "element {id:?}: found from {:?} to {:?} mm, expected inside Omega from {:?} to {:?} mm",
-        found.low, found.high, omega.low, omega.high
+        "element {id:?}: found {}, expected inside Omega {}",
+        corners(found),
+        corners(omega)
     )]
     OutsideOmega {
         /// Id of the element.
@@ -103,4 +104,15 @@ pub enum PlanError {
         /// What was expected.
         expected: &'static str,
     },
+}
+
+/// Writes the corners of a box, mm, to 1e-5 mm: without the rounding of boxes outward, but finer than any contact depth
+/// in use.
+fn corners(extent: &Extent) -> String {
+    let rounded = |corner: [f64; 3]| corner.map(|mm| (mm * 1e5).round() / 1e5 + 0.0);
+    format!(
+        "from {:?} to {:?} mm",
+        rounded(extent.low),
+        rounded(extent.high)
+    )
 }

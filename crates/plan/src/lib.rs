@@ -72,6 +72,8 @@ mod demands;
 mod direction;
 mod error;
 mod extent;
+#[cfg(any(test, feature = "fixture"))]
+pub mod fixture;
 mod greedy;
 mod improve;
 mod joint;

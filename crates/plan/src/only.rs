@@ -113,7 +113,7 @@ impl Search<'_> {
         }
     }
 
-    /// Returns the number of units that are asked to leave and have no way yet.
+    /// Returns the number of units that the search must still take out and whose path it has not yet chosen.
     fn still_asked(&self, open: &Open) -> usize {
         let mut asked: Vec<usize> = open
             .goals

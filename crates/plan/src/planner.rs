@@ -128,8 +128,19 @@ impl<'a> Planner<'a> {
         Problem::new(ways, leaves.collect())
     }
 
-    /// Returns the units that rest on each unit.
+    /// Returns the units that rest on each unit. Two units that hold each other from below are left out: neither can
+    /// wait for the other.
     fn rests(&self, units: &Units) -> Vec<Vec<u32>> {
+        let held = self.held_from_below(units);
+        let on = |lower: usize| {
+            let rests = |upper: &u32| !held[*upper as usize].contains(&(lower as u32));
+            held[lower].iter().copied().filter(rests).collect()
+        };
+        (0..held.len()).map(on).collect()
+    }
+
+    /// Returns, for each unit, the others that it holds from below.
+    fn held_from_below(&self, units: &Units) -> Vec<Vec<u32>> {
         let mut found: Vec<Vec<u32>> = vec![Vec::new(); units.members.len()];
         for (element, upper) in units.of_element.iter().enumerate() {
             for below in self.local.blockers(element, Direction::MinusZ) {
@@ -213,7 +224,7 @@ fn named(units: &Units, locked: &[usize], by: &[Vec<usize>], is_smallest: bool) 
     }
 }
 
-/// What turns a problem into steps.
+/// Turns a solved problem into steps.
 struct Making<'a> {
     units: &'a Units,
     priority: &'a [Direction],

@@ -3,7 +3,6 @@
 use super::*;
 use lpm::{Mesh, Pose, Shape};
 
-mod brute;
 mod contact;
 mod four_parts;
 mod hard_orders;

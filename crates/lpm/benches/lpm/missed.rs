@@ -4,7 +4,7 @@ use lpm::{Move, Mover};
 
 use super::timing::{Spread, warm};
 use super::world::specks;
-use super::{BAR, Bench, mover, row};
+use super::{BAR, Bench, P99_BAR, mover, row};
 
 /// Height above every element, mm.
 const FAR_ABOVE_MM: f64 = 10_000.0;
@@ -30,16 +30,16 @@ pub fn of_question(
     ours: &Spread,
     ask: &dyn Fn(&Mover, &Move) -> bool,
 ) {
-    if peer.mean >= BAR * ours.mean && peer.p99 >= BAR * ours.p99 {
+    if peer.mean >= BAR * ours.mean && peer.p99 >= P99_BAR * ours.p99 {
         return;
     }
     let poses = warm(&lifted(ways), bench.clock, |way| ask(&bench.mover, way));
     let specks = mover(specks());
     let boxes = warm(ways, bench.clock, |way| ask(&specks, way));
     println!(
-        "  (bar of {BAR}: mean {:.0}, p99 {:.0} ns; poses alone {:.0}, {:.0}: {:.2} of the bar; poses and boxes {:.0}, {:.0}: {:.2} of it)",
+        "  (bars of {BAR} and {P99_BAR}: mean {:.0}, p99 {:.0} ns; poses alone {:.0}, {:.0}: {:.2} of the bar; poses and boxes {:.0}, {:.0}: {:.2} of it)",
         peer.mean / BAR,
-        peer.p99 / BAR,
+        peer.p99 / P99_BAR,
         poses.mean,
         poses.p99,
         BAR * poses.mean / peer.mean,

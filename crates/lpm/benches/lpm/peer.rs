@@ -75,7 +75,11 @@ macro_rules! peer {
 
                 /// Builds the whole compound.
                 pub fn build(bodies: &[Placed], rounds: &mut Rounds) {
-                    rounds.turn(|| bodies.to_vec(), Compound::new);
+                    rounds.turn(|| bodies.to_vec(), Self::built);
+                }
+
+                pub fn built(bodies: Vec<Placed>) -> Compound {
+                    Compound::new(bodies)
                 }
 
                 /// Returns a function that inserts one leaf into the raw tree and removes it; its bounds are computed

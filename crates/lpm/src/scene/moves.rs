@@ -98,7 +98,12 @@ pub(super) fn distance(field: &Field) -> Result<f64, SceneError> {
     }
 }
 
-fn known(field: &Field, bodies: &[Named], [one, many]: [&str; 2]) -> Result<usize, SceneError> {
+/// Returns the index of the body that a field names.
+pub(super) fn known(
+    field: &Field,
+    bodies: &[Named],
+    [one, many]: [&str; 2],
+) -> Result<usize, SceneError> {
     let id = field.text()?;
     if let Some(index) = bodies.iter().position(|body| body.id == id) {
         return Ok(index);

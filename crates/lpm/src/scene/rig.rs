@@ -2,11 +2,11 @@
 //!
 //! The guard applies these parts; this module only checks them, so that whichever program reads the file first reports
 //! a mistake. The guard itself checks what else it requires (its eight actuators, an axis of unit length, a free
-//! stroke). The reader of `[[mate]]` checks the content of each entry.
+//! stroke), and the planner of tooling whether two mated elements touch as their mate says.
 
 use super::Scene;
 use super::field::{Field, SceneError, Table, expected_id, refuse};
-use super::moves::distance;
+use super::moves::{distance, known};
 use super::node::Node;
 use crate::LARGEST_COORDINATE_MM;
 use std::collections::HashSet;
@@ -21,10 +21,15 @@ const ACTUATOR: &[&str] = &[
     "points",
     "rides",
     "opposed",
+    "sensor_off_mm",
     "to_rest",
     "to_end",
 ];
 const PAIR: &[&str] = &["a", "b", "rule", "margin_mm", "depth_mm", "by"];
+const MATE: &[&str] = &["a", "b", "kind", "tolerance_mm"];
+const MATES: &str = "\"plane\", \"align\" or \"axis\"";
+/// Greatest gap of a mate, mm.
+const WIDEST_MATE_MM: f64 = 10.0;
 const MARGINS: &[&str] = &["default_margin_mm", "touch_depth_mm", "pin_inset_mm"];
 const PLACES: &[&str] = &["mouth", "pocket", "nest"];
 
@@ -65,9 +70,7 @@ pub(super) fn check(root: &Table, scene: &Scene, rig_names: &RigNames) -> Result
         pair(&field, &names)?;
     }
     for field in listed(root, "mate")? {
-        let Node::Table(_) = field.node else {
-            return field.refuse("a table");
-        };
+        mate(&field, scene)?;
     }
     root.optional("guard").map_or(Ok(()), |table| guard(&table))
 }
@@ -184,6 +187,28 @@ fn pair(field: &Field, names: &Names) -> Result<(), SceneError> {
     listed(&table, "by")?
         .iter()
         .try_for_each(|id| names.actuator(id.path.clone(), id.text()?))
+}
+
+fn mate(field: &Field, scene: &Scene) -> Result<(), SceneError> {
+    let table = field.table(MATE)?;
+    for key in ["a", "b"] {
+        known(
+            &table.required(key, "the id of an element")?,
+            &scene.elements,
+            ["an element of the scene", "elements"],
+        )?;
+    }
+    let kind = table.required("kind", MATES)?;
+    if !["plane", "align", "axis"].contains(&kind.text()?) {
+        return kind.refuse(MATES);
+    }
+    let Some(tolerance) = table.optional("tolerance_mm") else {
+        return Ok(());
+    };
+    if (0.0..=WIDEST_MATE_MM).contains(&tolerance.number()?) {
+        return Ok(());
+    }
+    tolerance.refuse("a gap of 0 to 10 mm")
 }
 
 fn guard(field: &Field) -> Result<(), SceneError> {

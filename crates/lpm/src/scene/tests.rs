@@ -100,7 +100,7 @@ const FOR_THE_RIG: &str = r#"{"units":"mm",
                 {"id":"slide","axis":[1,0,0],"points_mm":[0,75],"rides":"lift","opposed":["finger"]}],
     "pair":[{"a":"pin","b":"jaw","rule":"forbidden","margin_mm":0.5},
             {"a":"fin*","b":"pin","rule":"may_touch","depth_mm":0.1,"by":["slide"]}],
-    "mate":[{"of":"its reader"}],
+    "mate":[{"a":"pin","b":"finger","kind":"plane","tolerance_mm":0.01}],
     "guard":{"default_margin_mm":0.5,"nest":[0,0,1]}}"#;
 
 #[test]
@@ -199,14 +199,29 @@ fn parts_of_a_scene_for_the_rig_are_checked() {
             r#"pair[1].by[0]: found "glide""#,
         ),
         (
-            r#"[{"of":"its reader"}]"#,
+            r#"[{"a":"pin","b":"finger","kind":"plane","tolerance_mm":0.01}]"#,
             "null",
             "mate: found null, expected a list",
         ),
         (
-            r#"{"of":"its reader"}"#,
+            r#"{"a":"pin","b":"finger","kind":"plane","tolerance_mm":0.01}"#,
             "3",
             "mate[0]: found 3, expected a table",
+        ),
+        (
+            r#""b":"finger","kind""#,
+            r#""b":"jaw","kind""#,
+            r#"mate[0].b: found "jaw", expected the id of an element of the scene (pin, finger)"#,
+        ),
+        (
+            r#""kind":"plane","tol"#,
+            r#""kind":"round","tol"#,
+            r#"mate[0].kind: found "round", expected "plane", "align" or "axis""#,
+        ),
+        (
+            r#""tolerance_mm":0.01"#,
+            r#""tolerance_mm":-1"#,
+            "mate[0].tolerance_mm: found -1, expected a gap of 0 to 10 mm",
         ),
         (
             r#""default_margin_mm":0.5"#,

@@ -30,10 +30,6 @@ impl Ends {
     };
 }
 
-/// Masks of the squares, of a block of two by two, that an area has; the indices are its rows less one and its columns
-/// less one.
-const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
-
 /// Number of cells by which the grid extends beyond a piece outside it.
 pub(super) const GROWTH: i32 = 4;
 
@@ -99,8 +95,9 @@ impl Area {
     /// column, bit 2 the next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
-        let [wide, deep] = [0, 1].map(|axis: usize| (self.high[axis] - self.low[axis]) as usize);
-        DIFFERENT[deep % 2][wide % 2]
+        let edge = |axis: usize| (self.high[axis] - self.low[axis]) as u32;
+        let (wide, deep) = (edge(0), edge(1));
+        (1 + 2 * wide).wrapping_mul(1 + 4 * deep)
     }
 
     /// Returns true when the area contains `other`.

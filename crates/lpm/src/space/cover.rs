@@ -69,6 +69,21 @@ impl Cover {
         }
     }
 
+    /// Returns a box that encloses this box moved by `run`, mm.
+    #[inline]
+    pub(crate) fn swept_to(&self, run: Vec3) -> Cover {
+        let (low, high) = (Four::of(&self.low), Four::of(&self.high));
+        let way = Four::rounded(&run);
+        let slack = |bound: Four| {
+            let magnitude = bound.abs().plus(way.abs());
+            magnitude.times(Four::all(SINGLE)).plus(Four::all(TINY))
+        };
+        Cover {
+            low: low.plus(way).minus(slack(low)).numbers(),
+            high: high.plus(way).plus(slack(high)).numbers(),
+        }
+    }
+
     /// Returns the smallest box that encloses both boxes.
     #[inline]
     pub(crate) fn around(self, other: Cover) -> Cover {

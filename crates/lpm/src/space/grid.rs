@@ -8,9 +8,11 @@ use super::Seat;
 use std::ops::Range;
 
 use super::area::{Area, Ends, GROWTH};
+use super::codes::Scale;
 use super::cover::Cover;
+use super::layers::Reach;
 use super::pool::{Cell, Chain, Pool};
-use super::silhouettes::{Bundle, Lane, NONE};
+use super::silhouettes::{Lane, NONE};
 
 /// Maximum number of cells of the grid; pieces farther out go into the open cell.
 const MOST_CELLS: i64 = 1 << 18;
@@ -21,8 +23,11 @@ pub(crate) struct Grid {
     area: Area,
     /// Limits of the area that the grid covers.
     pub(super) ends: Ends,
+    /// How places become the codes of silhouettes.
+    pub(super) scale: Scale,
     pub(super) columns: usize,
-    /// For each cell, the layers in which it has pieces (its word, see [`Cell`]).
+    /// For each cell, the layers in which it has pieces (its word, see [`Cell`]); then a row and a cell of empty words,
+    /// so that every cell has a next column and a next row.
     pub(super) layers: Vec<u64>,
     pub(super) heads: Vec<u32>,
     pub(super) open_layers: u64,
@@ -35,6 +40,7 @@ impl Default for Grid {
         Grid {
             area: Area::NOWHERE,
             ends: Ends::FIRST,
+            scale: Scale::over(&Area::NOWHERE),
             columns: 0,
             layers: Vec::new(),
             heads: Vec::new(),
@@ -47,27 +53,36 @@ impl Default for Grid {
 
 impl Grid {
     /// Enters a piece in every cell that its silhouette touches, or in the open cell.
-    pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) {
-        let (area, lane) = (&seat.area, Lane::of(piece, cover, seat));
-        if seat.is_small && self.reach_over(area) {
-            self.each_cell(area, |pool, cell| pool.put(cell, &lane));
+    pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) -> Reach {
+        let is_inside = seat.is_small && self.reach_over(&seat.area);
+        let lane = self.lane(piece, cover);
+        let reach = lane.extent.reach();
+        let word = reach.word();
+        if is_inside {
+            self.each_cell(&seat.area, |pool, cell| pool.put(cell, &lane, word));
         } else {
-            self.in_the_open(|pool, cell| pool.put(cell, &lane));
+            self.in_the_open(|pool, cell| pool.put(cell, &lane, word));
         }
+        reach
     }
 
-    /// Removes a piece.
-    pub(crate) fn take(&mut self, piece: u32, seat: &Seat) {
-        let mut known = false;
+    #[inline]
+    fn lane(&self, piece: u32, cover: &Cover) -> Lane {
+        let extent = self.scale.extent(cover);
+        Lane { piece, extent }
+    }
+
+    /// Removes a piece and returns its layers; `None` when the grid does not have it.
+    pub(crate) fn take(&mut self, piece: u32, seat: &Seat) -> Option<Reach> {
+        let mut taken = None;
         if seat.is_small && self.area.holds(&seat.area) {
-            self.each_cell(&seat.area, |pool, cell| known = pool.take(cell, piece));
+            self.each_cell(&seat.area, |pool, cell| taken = pool.take(cell, piece));
         }
         // A piece that was too far out when it was entered stays in the open cell, even if the grid has grown since.
-        if !known {
-            self.in_the_open(|pool, cell| {
-                pool.take(cell, piece);
-            });
+        if taken.is_none() {
+            self.in_the_open(|pool, cell| taken = pool.take(cell, piece));
         }
+        taken.map(|extent| extent.reach())
     }
 
     #[inline]
@@ -121,22 +136,22 @@ impl Grid {
         steps > 3 || steps >= 0 && (word(0) | word(1) | word(2) | word(3)) & layers != 0
     }
 
-    /// Returns the layers in which a cell has pieces; 0 when no cell has this number.
-    #[inline]
-    pub(super) fn word(&self, place: usize) -> u64 {
-        self.layers.get(place).copied().unwrap_or(0)
+    /// Returns the words of the cell `place`, of the next column, of the next row, and of the next column in it; all 0
+    /// when the grid has no cells.
+    #[inline(always)]
+    pub(super) fn words(&self, place: usize) -> [u64; 4] {
+        let pair = |at: usize| self.layers.get(at..).and_then(|from| from.first_chunk());
+        match (pair(place), pair(place + self.columns)) {
+            (Some([a, b]), Some([c, d])) => [*a, *b, *c, *d],
+            _ => [0; 4],
+        }
     }
 
     /// Returns the bundles of a cell; `None` when it has no piece in one of these layers.
     #[inline]
     pub(crate) fn in_layers(&self, place: usize, layers: u64) -> Option<Chain<'_>> {
-        (self.word(place) & layers != 0).then(|| self.pool.chain(self.heads[place]))
-    }
-
-    /// Returns a bundle by its number.
-    #[inline]
-    pub(crate) fn bundle(&self, number: u32) -> &Bundle {
-        self.pool.bundle(number)
+        let word = self.layers.get(place).copied().unwrap_or(0);
+        (word & layers != 0).then(|| self.pool.chain(self.heads[place]))
     }
 
     /// Returns the bundles of the open cell; `None` when it has no piece in one of these layers.
@@ -180,7 +195,9 @@ impl Grid {
                 .copy_from_slice(&self.heads[from..from + self.columns]);
         }
         (self.layers, self.heads) = (larger.layers, larger.heads);
-        (self.columns, self.area, self.ends) = (larger.columns, larger.area, larger.ends);
+        self.pool.convert(&self.scale, &larger.scale);
+        (self.columns, self.area) = (larger.columns, larger.area);
+        (self.ends, self.scale) = (larger.ends, larger.scale);
         true
     }
 
@@ -190,8 +207,9 @@ impl Grid {
         Grid {
             area,
             ends: area.ends(),
+            scale: Scale::over(&area),
             columns: area.columns() as usize,
-            layers: vec![0; cells],
+            layers: vec![0; cells + area.columns() as usize + 1],
             heads: vec![NONE; cells],
             ..Grid::default()
         }
@@ -199,7 +217,7 @@ impl Grid {
 
     /// Makes a grid with pieces numbered from 0, equal to one that [`Grid::put`] fills piece by piece. Counts the
     /// silhouettes of each cell first, so that every cell gets all its bundles at once.
-    pub(super) fn filled(covers: &[Cover], seats: &[Seat]) -> Grid {
+    pub(super) fn filled(covers: &[Cover], seats: &[Seat], reaches: &[Reach]) -> Grid {
         let with_squares = |(_, seat): &(&Cover, &Seat)| seat.is_small;
         let small = covers.iter().zip(seats).filter(with_squares);
         let whole = small.map(|(cover, _)| *cover).reduce(Cover::around);
@@ -207,11 +225,13 @@ impl Grid {
         let fitting = whole.filter(|whole| whole.cells() <= MOST_CELLS);
         let mut grid = fitting.map_or_else(Grid::default, Grid::over);
         let reserved = |seat: &Seat| fitting.is_some() && seat.is_small;
-        let mut lanes = grid.reserve(seats.iter().filter(|seat| reserved(seat)));
+        let all = seats.iter().zip(reaches);
+        let mut lanes = grid.reserve(all.filter(|(seat, _)| reserved(seat)));
         for (number, (cover, seat)) in covers.iter().zip(seats).enumerate() {
             let number = number as u32;
             if reserved(seat) {
-                grid.put_reserved(&mut lanes, &Lane::of(number, cover, seat), &seat.area);
+                let lane = grid.lane(number, cover);
+                grid.put_reserved(&mut lanes, &lane, &seat.area);
             } else {
                 grid.put(number, cover, seat);
             }
@@ -221,10 +241,10 @@ impl Grid {
 
     /// Reserves the bundles for the pieces of `seats` and sets the words of the cells. Returns, for each cell, the lane
     /// of its first silhouette.
-    fn reserve<'a>(&mut self, seats: impl Iterator<Item = &'a Seat>) -> Vec<u32> {
-        let mut counts = vec![0u32; self.layers.len()];
-        for seat in seats {
-            let word = seat.reach.word();
+    fn reserve<'a>(&mut self, seats: impl Iterator<Item = (&'a Seat, &'a Reach)>) -> Vec<u32> {
+        let mut counts = vec![0u32; self.heads.len()];
+        for (seat, reach) in seats {
+            let word = reach.word();
             // Most pieces cover at most two by two squares, in a number that processors predict badly; so the code
             // always counts four squares, some of them by 0.
             if seat.area.is_few() {

@@ -1,6 +1,7 @@
 //! Layers: the checking space cut along z; each layer knows the actual lowest and highest height of its pieces.
 //!
-//! A layer is `{h1, h2, V, B}`: an interval of height of [`STEP_MM`], the lowest bottom of a piece that lies in it
+//! A layer is `{h1, h2, V, B}`: an interval of height of 8 mm (a third of the lowest elements of a fixture,
+//! so that a gripper which passes over them shares no layer with them), the lowest bottom of a piece that lies in it
 //! (`h1`) and the highest top (`h2`). A piece belongs to every layer into which it reaches, but no layer has a copy of
 //! it. `V` of a layer is one bit in the word of each cell of the [`Grid`](super::grid::Grid) (bit k: the cell has a
 //! piece in layer k). The silhouettes `B` are stored per cell, for all layers together
@@ -8,9 +9,8 @@
 //!
 //! The checking space Omega reaches from the lowest `h1` to the highest `h2` and changes with them.
 
-use super::Seat;
+use super::codes::heights;
 use super::cover::{Cover, larger, smaller};
-use super::four::Four;
 
 /// Number of layers: one for each bit of a word.
 const LAYERS: usize = 64;
@@ -18,13 +18,25 @@ const LAYERS: usize = 64;
 /// Greatest number of layers strictly between the lowest and the highest layer of a usual piece; few pieces have more.
 const SHORT: usize = 8;
 
-/// Height of a layer, mm: a third of the lowest elements of a fixture, so that a gripper which passes over them shares
-/// no layer with them.
-const STEP_MM: f32 = 8.0;
+/// For each number of passed layers up to [`SHORT`]: all bits of the counts of these layers, no bit of the others.
+static PASSED: [[u32; SHORT]; SHORT + 1] = {
+    let mut masks = [[0; SHORT]; SHORT + 1];
+    let mut between = 0;
+    while between <= SHORT {
+        let mut at = 0;
+        while at < between {
+            masks[between][at] = u32::MAX;
+            at += 1;
+        }
+        between += 1;
+    }
+    masks
+};
 
-/// Number of layers below the top of the baseplate, less the half that rounding to nearest adds. A lower piece belongs
-/// to the lowest layer, a piece above all layers (440 mm) to the highest one.
-const STEPS_BELOW: f32 = 7.5;
+/// Number of codes of height in a layer, as a power of two; the next number is the layer in the middle of all codes. A
+/// piece below -64 mm belongs to the lowest layer, a piece above 440 mm to the highest one.
+const CODES: u32 = 8;
+const MIDDLE: i16 = 64;
 
 /// The lowest and the highest layer into which a piece reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,24 +46,21 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// The empty reach.
-    pub(super) const NONE: Reach = Reach {
-        low: LAYERS as u8 - 1,
-        high: 0,
-    };
-
     /// Returns the layers between the heights of bottom and top, mm.
     #[inline(always)]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
-        let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);
-        let steps = heights.times(Four::all(1.0 / STEP_MM));
-        let steps = steps.plus(Four::all(STEPS_BELOW));
-        // Every step keeps the order of heights, so that two overlapping ranges of heights always share a layer.
-        let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
-        let [low, high, ..] = within.nearest();
+        let (low, high) = heights(bottom_mm, top_mm);
+        Reach::between(low, high)
+    }
+
+    /// Returns the layers between two codes of height. Codes keep the order of heights, so that two overlapping ranges
+    /// of heights always share a layer.
+    #[inline(always)]
+    pub(super) fn between(low: i16, high: i16) -> Reach {
+        let layer = |code: i16| ((code >> CODES) + MIDDLE).clamp(0, LAYERS as i16 - 1) as u8;
         Reach {
-            low: low as u8,
-            high: high as u8,
+            low: layer(low),
+            high: layer(high),
         }
     }
 
@@ -97,11 +106,11 @@ impl Default for Layers {
 
 impl Layers {
     /// Builds the layers of many pieces at once.
-    pub(super) fn of(seats: &[Seat], covers: &[Cover]) -> Layers {
+    pub(super) fn of(reaches: &[Reach], covers: &[Cover]) -> Layers {
         let mut layers = Layers::default();
         // Counts the pieces that begin and end in the same layer.
         let mut within = [0u32; LAYERS];
-        for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
+        for (reach, cover) in reaches.iter().zip(covers) {
             layers.enclose(*reach, cover.low[2], cover.high[2]);
             if reach.low == reach.high {
                 within[usize::from(reach.low) % LAYERS] += 1;
@@ -145,15 +154,15 @@ impl Layers {
         let first = usize::from(reach.low) + 1;
         let between = usize::from(reach.high).saturating_sub(first);
         let passed = &mut self.passing[first..];
-        match passed.first_chunk_mut::<SHORT>() {
+        match (passed.first_chunk_mut::<SHORT>(), PASSED.get(between)) {
             // The number of layers is unpredictable, so the loop always writes `SHORT` counts; most of them do not
             // change.
-            Some(few) if between <= SHORT => {
-                for (at, count) in few.iter_mut().enumerate() {
-                    *count = count.wrapping_add(if at < between { more } else { 0 });
+            (Some(few), Some(masks)) => {
+                for (count, mask) in few.iter_mut().zip(masks) {
+                    *count = count.wrapping_add(more & mask);
                 }
             }
-            Some(_) | None => {
+            (Some(_), None) | (None, _) => {
                 let long = passed.iter_mut().take(between);
                 long.for_each(|count| *count = count.wrapping_add(more));
             }
@@ -184,10 +193,16 @@ impl Layers {
     /// Returns a word with one bit set for each layer between the heights `low` and `high` (mm); 0 outside Omega.
     #[inline]
     pub(crate) fn between(&self, low: f32, high: f32) -> u64 {
-        if high < self.bottom || low > self.top {
+        if self.misses(low, high) {
             return 0;
         }
         Reach::of(low, high).word()
+    }
+
+    /// Returns true when the heights `low` to `high` (mm) are outside Omega.
+    #[inline]
+    pub(super) fn misses(&self, low: f32, high: f32) -> bool {
+        (high < self.bottom) | (low > self.top)
     }
 
     /// Returns [`Layers::between`], without its lowest and highest layer where the pieces of that layer do not reach
@@ -258,12 +273,10 @@ mod tests {
                     Cover::of(([0.0, 0.0, bottom], [1.0, 1.0, bottom + tall]))
                 })
                 .collect();
-            let seats: Vec<Seat> = covers.iter().map(Seat::of).collect();
             let mut single = Layers::default();
-            for cover in &covers {
-                joined(&mut single, cover.low[2], cover.high[2]);
-            }
-            let at_once = Layers::of(&seats, &covers);
+            let join = |cover: &Cover| joined(&mut single, cover.low[2], cover.high[2]);
+            let reaches: Vec<Reach> = covers.iter().map(join).collect();
+            let at_once = Layers::of(&reaches, &covers);
             assert_eq!(format!("{at_once:?}"), format!("{single:?}"), "{count}");
         }
     }

@@ -14,7 +14,9 @@
 mod area;
 mod around;
 mod boxes;
+mod codes;
 mod cover;
+mod eight;
 mod four;
 mod grid;
 mod layers;
@@ -25,6 +27,7 @@ mod sweep;
 mod walk;
 
 pub(crate) use boxes::Boxes;
+pub(crate) use codes::Onset;
 pub(crate) use cover::{Cover, above};
 pub(crate) use four::Four;
 pub(crate) use silhouettes::{Bundle, LANES};
@@ -45,36 +48,28 @@ const MOST_CELLS_OF_A_PIECE: i64 = 128;
 pub(crate) struct Space {
     layers: Layers,
     grid: Grid,
-    /// Squares and layers of each piece, by the number of the piece.
-    seats: Vec<Seat>,
 }
 
 impl Space {
-    /// Removes a piece from the cells and layers in which it was entered.
+    /// Removes a piece, which was entered with `cover`, from its cells and layers.
     #[inline]
-    pub(crate) fn remove(&mut self, piece: u32) {
-        let seat = &self.seats[piece as usize];
-        self.layers.remove(seat.reach);
-        self.grid.take(piece, seat);
+    pub(crate) fn remove(&mut self, piece: u32, cover: &Cover) {
+        if let Some(reach) = self.grid.take(piece, &Seat::of(cover)) {
+            self.layers.remove(reach);
+        }
     }
 
     /// Returns the heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.grid.heap_bytes() + self.seats.capacity() * size_of::<Seat>()
+        self.grid.heap_bytes()
     }
 
     /// Returns the bundles with pieces that a box at rest may meet, each with a mask (bit k: lane k). The same piece
     /// may come more than once.
     #[inline(always)]
     pub(crate) fn around<'a>(&'a self, cover: &'a Cover) -> Option<Around<'a>> {
-        let layers = self.layers.between(cover.low[2], cover.high[2]);
-        (layers != 0).then(|| Around::new(&self.grid, cover, layers))
-    }
-
-    /// Returns a bundle by its number.
-    #[inline]
-    pub(crate) fn bundle(&self, number: u32) -> &Bundle {
-        self.grid.bundle(number)
+        let misses = self.layers.misses(cover.low[2], cover.high[2]);
+        (!misses).then(|| Around::new(&self.grid, cover))
     }
 
     /// Passes to `visit`, bundle by bundle, every piece that a moving box may meet up to the fraction `until` of its
@@ -89,11 +84,10 @@ impl Space {
     }
 }
 
-/// The squares and layers in which a piece is entered.
+/// The squares in which a piece is entered.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seat {
     area: Area,
-    reach: Reach,
     /// True when the piece covers few enough squares to be entered in each of them.
     is_small: bool,
 }
@@ -104,7 +98,6 @@ impl Seat {
         let area = Area::of(cover);
         Seat {
             area,
-            reach: Reach::of(cover.low[2], cover.high[2]),
             is_small: area.cells() <= MOST_CELLS_OF_A_PIECE,
         }
     }
@@ -119,13 +112,8 @@ pub(crate) trait Entering {
 impl Entering for Space {
     #[inline]
     fn enter(&mut self, piece: u32, cover: &Cover) {
-        let seat = Seat::of(cover);
-        self.layers.join(seat.reach, cover.low[2], cover.high[2]);
-        self.grid.put(piece, cover, &seat);
-        match self.seats.get_mut(piece as usize) {
-            Some(known) => *known = seat,
-            None => self.seats.push(seat),
-        }
+        let reach = self.grid.put(piece, cover, &Seat::of(cover));
+        self.layers.join(reach, cover.low[2], cover.high[2]);
     }
 }
 
@@ -147,10 +135,11 @@ impl Filling {
     /// Builds the space; it is equal to one into which the pieces are inserted one by one.
     pub(crate) fn space(self) -> Space {
         let seats: Vec<Seat> = self.covers.iter().map(Seat::of).collect();
+        let reach = |cover: &Cover| Reach::of(cover.low[2], cover.high[2]);
+        let reaches: Vec<Reach> = self.covers.iter().map(reach).collect();
         Space {
-            layers: Layers::of(&seats, &self.covers),
-            grid: Grid::filled(&self.covers, &seats),
-            seats,
+            layers: Layers::of(&reaches, &self.covers),
+            grid: Grid::filled(&self.covers, &seats, &reaches),
         }
     }
 }

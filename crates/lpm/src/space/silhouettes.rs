@@ -1,10 +1,9 @@
 //! Silhouettes (`B` in the paper): the extents of each piece in x, y and z, compared eight at a time.
 
-use super::Seat;
-use super::boxes::Boxes;
+use super::codes::{Extent, Onset, Scale};
 use super::cover::Cover;
+use super::eight::Eight;
 use super::layers::Reach;
-use super::sweep::Sweep;
 
 /// Number of pieces in one bundle; the place of a piece in it is a lane.
 pub(crate) const LANES: usize = 8;
@@ -16,110 +15,109 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lane {
     pub(super) piece: u32,
-    pub(super) reach: Reach,
-    pub(super) cover: Cover,
+    pub(super) extent: Extent,
 }
 
-impl Lane {
-    #[inline]
-    pub(super) fn of(piece: u32, cover: &Cover, seat: &Seat) -> Lane {
-        Lane {
-            piece,
-            reach: seat.reach,
-            cover: *cover,
+/// Eight silhouettes with their pieces, in two cache lines.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub(crate) struct Bundle {
+    /// Codes of each axis; lanes that are not in use have those of [`Extent::NOWHERE`].
+    low: [[i16; LANES]; 3],
+    high: [[i16; LANES]; 3],
+    pieces: [u32; LANES],
+}
+
+/// Limits of heights that keep all lanes but those that are gone.
+struct Limits {
+    low: [i16; LANES],
+    high: [i16; LANES],
+}
+
+const ALL: Limits = Limits {
+    low: [i16::MIN; LANES],
+    high: [i16::MAX; LANES],
+};
+
+/// For each lane, the limits that keep all others.
+static WITHOUT: [Limits; LANES] = {
+    let mut without = [const { ALL }; LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        without[lane].low[lane] = i16::MAX;
+        without[lane].high[lane] = i16::MIN;
+        lane += 1;
+    }
+    without
+};
+
+/// The box that a question compares with bundles: each of its codes, eight times.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Asked {
+    low: [Eight; 3],
+    high: [Eight; 3],
+}
+
+impl Asked {
+    #[inline(always)]
+    pub(super) fn of(extent: &Extent) -> Asked {
+        Asked {
+            low: extent.low.map(Eight::all),
+            high: extent.high.map(Eight::all),
         }
     }
-}
 
-/// Eight silhouettes with their pieces. Lanes from `count` on are not in use.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-pub(crate) struct Bundle {
-    boxes: Boxes<LANES>,
-    pieces: [u32; LANES],
-    /// Number of the lowest layer of each piece; the next field has the highest.
-    lowest: [u8; LANES],
-    highest: [u8; LANES],
-    count: u32,
-    /// Next bundle of the same cell, which is always full; [`NONE`] after the last one.
-    pub(super) next: u32,
+    /// Returns the codes of a box.
+    #[inline(always)]
+    pub(super) fn about(scale: &Scale, cover: &Cover) -> Asked {
+        Asked::of(&scale.extent(cover))
+    }
 }
 
 impl Bundle {
-    /// Returns an empty bundle, linked before the bundle `next` of its cell.
-    #[inline]
-    pub(super) fn before(next: u32) -> Bundle {
-        Bundle {
-            boxes: Boxes::NOWHERE,
-            pieces: [NONE; LANES],
-            lowest: [Reach::NONE.low; LANES],
-            highest: [Reach::NONE.high; LANES],
-            count: 0,
-            next,
-        }
-    }
-
-    #[inline]
-    pub(super) fn is_full(&self) -> bool {
-        self.count as usize == LANES
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    #[inline]
-    pub(super) fn push(&mut self, lane: &Lane) {
-        self.count += 1;
-        self.set(self.last(), lane);
-    }
-
-    /// Marks `count` lanes as in use; [`Bundle::set`] fills them later.
-    #[inline]
-    pub(super) fn expect(&mut self, count: u32) {
-        self.count = count;
-    }
+    /// A bundle without pieces.
+    pub(super) const EMPTY: Bundle = Bundle {
+        low: [[i16::MAX; LANES]; 3],
+        high: [[i16::MIN; LANES]; 3],
+        pieces: [NONE; LANES],
+    };
 
     #[inline]
     pub(super) fn set(&mut self, at: usize, lane: &Lane) {
-        self.boxes.set(at, &lane.cover);
+        for axis in 0..3 {
+            self.low[axis][at] = lane.extent.low[axis];
+            self.high[axis][at] = lane.extent.high[axis];
+        }
         self.pieces[at] = lane.piece;
-        (self.lowest[at], self.highest[at]) = (lane.reach.low, lane.reach.high);
     }
 
     /// Returns the silhouette of a lane.
     #[inline]
     pub(super) fn lane(&self, at: usize) -> Lane {
+        let member = |[x, y, z]: &[[i16; LANES]; 3]| [x[at], y[at], z[at]];
         Lane {
             piece: self.pieces[at],
-            reach: Reach {
-                low: self.lowest[at],
-                high: self.highest[at],
+            extent: Extent {
+                low: member(&self.low),
+                high: member(&self.high),
             },
-            cover: self.cover(at),
         }
     }
 
-    /// Removes the last lane.
+    /// Frees a lane.
     #[inline]
-    pub(super) fn pop(&mut self) {
-        let last = self.last();
-        self.pieces[last] = NONE;
-        (self.lowest[last], self.highest[last]) = (Reach::NONE.low, Reach::NONE.high);
-        self.count = self.count.saturating_sub(1);
+    pub(super) fn clear(&mut self, at: usize) {
+        let free = Lane {
+            piece: NONE,
+            extent: Extent::NOWHERE,
+        };
+        self.set(at, &free);
     }
 
-    /// Returns the newest lane; in an empty bundle, one that is not in use.
-    #[inline]
-    pub(super) fn last(&self) -> usize {
-        (self.count as usize).wrapping_sub(1) % LANES
-    }
-
-    /// Returns the lane of a piece. Searches from the newest lane, because parts that pass through a fixture leave it
+    /// Returns the lane of a piece. Looks at lane `last` first, because parts that pass through a fixture leave it
     /// before its own elements do.
     #[inline]
-    pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
-        let last = self.last();
+    pub(super) fn lane_of(&self, piece: u32, last: usize) -> Option<usize> {
         if self.pieces[last] == piece {
             return Some(last);
         }
@@ -131,57 +129,32 @@ impl Bundle {
 
     /// Returns the word of all layers in which this bundle has pieces, without the lane `gone`.
     ///
-    /// Call this before removing the lane: a read of eight bytes at once stalls the processor right after they were
+    /// Call this before removing the lane: a read of eight numbers at once stalls the processor right after they were
     /// written one by one.
     #[inline]
     pub(super) fn word_without(&self, gone: Option<usize>) -> u64 {
-        let gone = gone.map_or(0, |lane| 0xff << (8 * lane));
-        let lowest = u64::from_le_bytes(self.lowest) | gone;
-        let highest = u64::from_le_bytes(self.highest) & !gone;
-        let reach = Reach {
-            low: lowest
-                .to_le_bytes()
-                .into_iter()
-                .fold(Reach::NONE.low, u8::min),
-            high: highest
-                .to_le_bytes()
-                .into_iter()
-                .fold(Reach::NONE.high, u8::max),
-        };
-        reach.word()
+        let gone = gone.map_or(&ALL, |lane| &WITHOUT[lane % LANES]);
+        let low = Eight::of(&self.low[2]).larger(Eight::of(&gone.low));
+        let high = Eight::of(&self.high[2]).smaller(Eight::of(&gone.high));
+        Reach::between(low.least(), high.greatest()).word()
     }
 
-    /// Returns a mask of the lanes in use (bit k: lane k).
-    #[inline]
-    fn used(&self) -> u32 {
-        (1 << self.count) - 1
-    }
-
-    /// Returns a mask in which bit k is set when the silhouette of lane k shares a point with `cover`.
-    #[inline]
-    pub(super) fn meeting(&self, cover: &Cover) -> u32 {
-        self.boxes.meeting(cover) & self.used()
-    }
-
-    /// Returns a mask of the silhouettes that a moving box meets up to the fraction `until` of its path, and for each
-    /// of them the fraction before which the box does not meet it.
+    /// Returns a mask in which bit k is set when the silhouette of lane k may share a point with a box.
     #[inline(always)]
-    pub(super) fn crossing(&self, sweep: &Sweep, until: f32) -> (u32, [f32; LANES]) {
-        let crossing = self.boxes.crossing(&sweep.start, &sweep.pace, until);
-        (crossing.lanes & self.used(), crossing.entry)
+    pub(super) fn meeting(&self, asked: &Asked) -> u32 {
+        let apart = |axis: usize| {
+            let beyond = Eight::of(&self.low[axis]).above(asked.high[axis]);
+            beyond.or(asked.low[axis].above(Eight::of(&self.high[axis])))
+        };
+        let apart = apart(0).or(apart(1)).or(apart(2));
+        apart.negative() ^ ((1 << LANES) - 1)
     }
 
-    /// Returns, for each silhouette, the fraction of the path before which the moving box does not meet it along one
-    /// axis.
-    #[inline]
-    pub(super) fn entry(&self, sweep: &Sweep, axis: usize) -> [f32; LANES] {
-        self.boxes.entry(&sweep.start, &sweep.pace, axis)
-    }
-
-    /// Returns the box around the piece of a lane.
-    #[inline]
-    pub(crate) fn cover(&self, lane: usize) -> Cover {
-        self.boxes.cover(lane)
+    /// Returns the fraction of the path before which the moving box does not meet the piece of a lane.
+    #[inline(always)]
+    pub(crate) fn entry(&self, lane: usize, onset: &Onset) -> f32 {
+        let Extent { low, high } = self.lane(lane).extent;
+        onset.entry([low, high])
     }
 
     #[inline]
@@ -199,40 +172,26 @@ mod tests {
     fn the_layer_word_spans_all_remaining_lanes() {
         let mut dice = Dice::new(17);
         for _ in 0..2_000 {
-            let mut bundle = Bundle::before(NONE);
-            let mut reaches = Vec::new();
-            for piece in 0..dice.pick(9) as u32 {
-                let low = dice.pick(64) as u8;
-                let high = low + dice.pick(64 - u64::from(low)) as u8;
-                let reach = Reach { low, high };
-                let cover = Cover {
-                    low: [0.0; 4],
-                    high: [0.0; 4],
-                };
-                bundle.push(&Lane {
-                    piece,
-                    reach,
-                    cover,
-                });
-                reaches.push(reach);
-            }
+            let mut bundle = Bundle::EMPTY;
             let gone = dice.pick(9) as usize;
-            let gone = (gone < reaches.len()).then_some(gone);
-            let stay = |at: &usize| Some(*at) != gone;
-            let stay: Vec<Reach> = (0..reaches.len())
-                .filter(stay)
-                .map(|at| reaches[at])
-                .collect();
-            let low = stay.iter().map(|reach| reach.low).min();
-            let high = stay.iter().map(|reach| reach.high).max();
-            let word = low
-                .zip(high)
-                .map_or(0, |(low, high)| Reach { low, high }.word());
-            assert_eq!(
-                bundle.word_without(gone),
-                word,
-                "{reaches:?} without {gone:?}"
-            );
+            let gone = (gone < LANES).then_some(gone);
+            let mut heights = (i16::MAX, i16::MIN);
+            for at in 0..dice.pick(9) as usize {
+                let mut extent = Extent::NOWHERE;
+                let low = dice.pick(40_000) as i32 - 20_000;
+                extent.low[2] = low as i16;
+                extent.high[2] = (low + dice.pick(9_000) as i32) as i16;
+                let piece = at as u32;
+                bundle.set(at, &Lane { piece, extent });
+                if Some(at) != gone {
+                    let (low, high) = (extent.low[2], extent.high[2]);
+                    heights = (heights.0.min(low), heights.1.max(high));
+                }
+                let word = Reach::between(heights.0, heights.1).word();
+                assert_eq!(bundle.word_without(gone), word);
+            }
+            (0..LANES).for_each(|at| bundle.clear(at));
+            assert_eq!(bundle.word_without(None), 0);
         }
     }
 }

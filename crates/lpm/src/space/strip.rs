@@ -35,6 +35,8 @@ pub(super) struct Strip {
     /// are in bands.
     ahead: f64,
     run: f64,
+    /// Length of the path while the box is over a band, in bands.
+    over: f64,
 }
 
 impl Strip {
@@ -80,7 +82,17 @@ impl Strip {
             width: area.high[across] - area.low[across],
             ahead: direction * if is_forward { first } else { end } * (1.0 / PITCH_MM),
             run: sweep.run[AXIS].abs() * (1.0 / PITCH_MM),
+            over: (end - first) * (1.0 / PITCH_MM),
         }
+    }
+
+    /// Returns the fractions of the path between which the box is over the band `step`, at most `until`.
+    #[inline]
+    pub(super) fn over(&self, step: i32, until: f64) -> (f64, f64) {
+        let enter = self.ahead + f64::from(step);
+        // Minimum and maximum ignore NaN, which means the whole path.
+        let leave = ((enter + self.over) / self.run).min(until);
+        ((enter / self.run).max(0.0), leave)
     }
 
     /// Returns the number of the last band that the box reaches up to the fraction `until` of its path.

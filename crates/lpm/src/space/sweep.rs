@@ -29,6 +29,12 @@ impl Pace {
         Pace([of(run[0]), of(run[1]), of(run[2])])
     }
 
+    /// Returns true when the pace is that of an axis along which the box moves.
+    #[inline(always)]
+    pub(super) fn is_moving(pace: f32) -> bool {
+        pace.is_finite()
+    }
+
     /// Returns the pace of the surroundings as seen from the box.
     #[inline]
     pub(crate) fn reversed(self) -> Pace {
@@ -63,15 +69,12 @@ impl Sweep {
         self.start.swept([x * until, y * until, z * until])
     }
 
-    /// Returns the axis along which the box moves farthest.
+    /// Returns the box around the part of the path between two fractions.
     #[inline]
-    pub(crate) fn axis(&self) -> usize {
-        let [x, y, z] = [self.run[0].abs(), self.run[1].abs(), self.run[2].abs()];
-        if z >= x && z >= y {
-            2
-        } else {
-            usize::from(y > x)
-        }
+    pub(crate) fn between(&self, from: f64, to: f64) -> Cover {
+        let [x, y, z] = self.run;
+        let place = |t: f64| self.start.swept_to([x * t, y * t, z * t]);
+        place(from).around(place(to))
     }
 
     /// Returns true when the box moves along more than one axis; the box around its path is then much larger than the

@@ -1,10 +1,11 @@
 //! Walks over the squares of the baseplate along the path of a box, in the direction of motion.
 
 use super::area::Area;
-use super::cover::{Cover, above};
+use super::codes::Onset;
+use super::cover::Cover;
 use super::grid::Grid;
 use super::pool::Chain;
-use super::silhouettes::{Bundle, LANES};
+use super::silhouettes::{Asked, Bundle};
 use super::strip::Strip;
 use super::sweep::{SLOWEST_MM, Sweep};
 
@@ -13,12 +14,11 @@ pub(crate) trait Visit {
     /// Returns true when the visitor needs the pieces in the order in which they are met.
     fn in_order(&self) -> bool;
 
-    /// Receives a bundle with its number. The box may meet lane k if bit k of `lanes` is set; with [`Visit::in_order`],
-    /// `entry[k]` is the fraction of the path before which it does not meet lane k. The same piece may come more than
-    /// once. Returns true to end the walk.
-    fn bundle(&mut self, shown: (u32, &Bundle), lanes: u32, entry: &[f32; LANES]) -> bool;
+    /// Receives a bundle. The box may meet lane k if bit k of `lanes` is set. The same piece may come more than once.
+    /// `onset` is given with [`Visit::in_order`]. Returns true to end the walk.
+    fn bundle(&mut self, bundle: &Bundle, lanes: u32, onset: Option<&Onset>) -> bool;
 
-    /// The walk calls this when the box meets no piece still to come earlier than those that came since the last pause.
+    /// The walk calls this between groups of pieces: the box meets no later piece earlier than those of the group.
     /// Returns the fraction of the path up to which pieces still matter; below 0 to end the walk.
     fn pause(&mut self) -> f64;
 }
@@ -29,13 +29,12 @@ pub(super) struct Walk<'a, V> {
     sweep: &'a Sweep,
     /// Layers into which the box reaches.
     layers: u64,
-    /// Box around the path that remains.
+    /// Box around the path that remains; the next field has its codes.
     cover: Cover,
+    asked: Asked,
+    onset: Option<Onset>,
     /// Fraction of the path up to which pieces still matter.
     until: f64,
-    is_slanted: bool,
-    /// Axis along which the box moves farthest.
-    axis: usize,
     visit: &'a mut V,
 }
 
@@ -53,9 +52,9 @@ impl<'a, V: Visit> Walk<'a, V> {
             sweep,
             layers,
             cover,
+            asked: Asked::about(&grid.scale, &cover),
+            onset: visit.in_order().then(|| grid.scale.onset(sweep)),
             until: 1.0,
-            is_slanted: sweep.is_slanted(),
-            axis: sweep.axis(),
             visit,
         }
     }
@@ -84,23 +83,11 @@ impl<'a, V: Visit> Walk<'a, V> {
     }
 
     /// Visits the bundles of one cell; returns true to end the walk.
+    #[inline]
     fn bundles(&mut self, chain: Chain<'_>) -> bool {
-        let (sweep, until) = (self.sweep, above(self.until));
-        let in_order = self.visit.in_order();
-        for (number, bundle) in chain {
-            // A piece may overlap the box around a slanted path although the moving box never meets it.
-            let (lanes, entry) = if self.is_slanted {
-                bundle.crossing(sweep, until)
-            } else {
-                let lanes = bundle.meeting(&self.cover);
-                let entry = if in_order && lanes != 0 {
-                    bundle.entry(sweep, self.axis)
-                } else {
-                    [0.0; LANES]
-                };
-                (lanes, entry)
-            };
-            if lanes != 0 && self.visit.bundle((number, bundle), lanes, &entry) {
+        for bundle in chain {
+            let lanes = bundle.meeting(&self.asked);
+            if lanes != 0 && self.visit.bundle(bundle, lanes, self.onset.as_ref()) {
                 return true;
             }
         }
@@ -111,6 +98,7 @@ impl<'a, V: Visit> Walk<'a, V> {
         if until < self.until {
             self.until = until;
             self.cover = self.sweep.cover(until);
+            self.asked = Asked::about(&self.grid.scale, &self.cover);
         }
     }
 
@@ -139,11 +127,13 @@ impl<'a, V: Visit> Walk<'a, V> {
     /// visits only the squares that the box passes while it is over this band.
     fn along<const AXIS: usize>(&mut self, area: &Area) {
         let mut strip = Strip::new::<AXIS>(self.sweep, area);
+        let is_slanted = self.sweep.is_slanted();
         let stride = self.grid.stride(1 - AXIS);
         let until = self.visit.pause();
         self.shorten(until);
         let mut last = strip.last(self.until);
         while strip.step <= last {
+            let step = strip.step;
             let (band, from, to) = strip.next();
             let first = if AXIS == 0 {
                 self.grid.place(band, area.low[1] + from)
@@ -153,6 +143,12 @@ impl<'a, V: Visit> Walk<'a, V> {
             let steps = to - from;
             if !self.grid.may_have_piece(first, stride, steps, self.layers) {
                 continue;
+            }
+            if is_slanted {
+                // The box around a slanted path is much larger than the path, that around its part in a band is not.
+                let (enter, leave) = strip.over(step, self.until);
+                let cover = self.sweep.between(enter, leave);
+                self.asked = Asked::about(&self.grid.scale, &cover);
             }
             for square in 0..=steps as usize {
                 if let Some(chain) = self.grid.in_layers(first + stride * square, self.layers)

@@ -3,10 +3,18 @@ use super::*;
 use crate::distance::tests::Dice;
 
 fn scene(dice: &mut Dice, count: usize) -> Vec<(Shape, Pose)> {
+    turned_scene(dice, count, Dice::rotation)
+}
+
+fn turned_scene(
+    dice: &mut Dice,
+    count: usize,
+    turn: fn(&mut Dice) -> [f64; 4],
+) -> Vec<(Shape, Pose)> {
     (0..count)
         .map(|_| {
             let place = dice.vector().map(|member| 400.0 * member);
-            let rotation = dice.rotation();
+            let rotation = turn(dice);
             let mut size = || 15.0 * (1.1 + dice.signed());
             let shape = match size() as u64 % 3 {
                 0 => block(size(), size(), size()),
@@ -31,7 +39,13 @@ fn scene(dice: &mut Dice, count: usize) -> Vec<(Shape, Pose)> {
 fn the_broad_phase_loses_no_contact() {
     for seed in 0..40 {
         let mut dice = Dice::new(seed);
-        let elements = scene(&mut dice, 60);
+        // In every second scene all bodies stand upright, as closed forms want them.
+        let turn = if seed % 2 == 0 {
+            Dice::rotation
+        } else {
+            |_: &mut Dice| Pose::IDENTITY.rotation
+        };
+        let elements = turned_scene(&mut dice, 60, turn);
         let mut model = Model::new();
         let mut keys = Vec::new();
         for (shape, pose) in &elements {
@@ -49,7 +63,7 @@ fn the_broad_phase_loses_no_contact() {
             .collect();
         for _ in 0..20 {
             let (mover, _) = scene(&mut dice, 1).remove(0);
-            let rotation = dice.rotation();
+            let rotation = turn(&mut dice);
             let ends = [0, 1].map(|_| Pose {
                 position: dice.vector().map(|member| 700.0 * member),
                 rotation,

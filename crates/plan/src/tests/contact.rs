@@ -64,19 +64,19 @@ fn a_part_between_two_walls_slides_both_ways() {
 fn shafts_leave_holes_of_any_fit_along_the_axis() {
     for place in PLACES_MM {
         for clearance_mm in [1e-3, 1e-6, 1e-9, 0.0] {
-            for askew_mm in [0.0, 1e-9] {
+            // The shaft lies beside the axis, and then tilted by as much over its length.
+            for (askew_mm, tilt) in [(0.0, 0.0), (1e-9, 0.0), (0.0, 1e-9 / 30.0)] {
                 let shaft = Shape::Cylinder {
                     radius: 5.0 - clearance_mm,
                     height: 30.0,
                 };
-                let parts = vec![
-                    holed("plate", 20.0, 5.0, 0.0, 10.0),
-                    element("shaft", shaft, [askew_mm, -askew_mm, 5.0]),
-                ];
+                let mut shaft = element("shaft", shaft, [askew_mm, -askew_mm, 5.0]);
+                shaft.pose.rotation = [1.0, 0.5 * tilt, -0.5 * tilt, 0.0];
+                let parts = vec![holed("plate", 20.0, 5.0, 0.0, 10.0), shaft];
                 let assembly = assembled(moved(parts, place));
                 let found = row(&assembly, 1);
                 let wanted = [vec![0], vec![0], vec![0], vec![0], vec![], vec![]];
-                assert_eq!(found, wanted, "{place:?} {clearance_mm} {askew_mm}");
+                assert_eq!(found, wanted, "{place:?} {clearance_mm} {askew_mm} {tilt}");
                 let local = Interference::local(&assembly).unwrap();
                 let found = mates(&assembly, &local).unwrap();
                 assert_eq!(priority(&found), [Direction::PlusZ, Direction::MinusZ]);

@@ -266,3 +266,27 @@ fn nothing_leaves_from_under_what_rests_on_it() {
     };
     assert_eq!(ids(&supported), ["cover", "block", "plate"]);
 }
+
+#[test]
+fn a_rod_and_its_cylinder_do_not_rest_on_each_other() {
+    let elements = vec![
+        between("cylinder", [0.0, 0.0, 0.0], [10.0, 10.0, 10.0]),
+        between("rod", [5.0, 4.0, 4.0], [20.0, 6.0, 6.0]),
+        between("lid", [0.0, 0.0, 10.0], [10.0, 10.0, 11.0]),
+    ];
+    let runs = Guided {
+        a: 0,
+        b: 1,
+        axis: Some(0),
+    };
+    let assembly = Assembly::new(elements, None, Tolerance::default(), vec![runs]).unwrap();
+    let demands = Demands {
+        remove: vec!["cylinder".to_owned()],
+        keeps_supports: true,
+        ..Demands::default()
+    };
+    assert_eq!(
+        told(&assembly, &sequence_of(&assembly, &demands).steps),
+        ["lid -x", "cylinder -x"]
+    );
+}

@@ -24,6 +24,11 @@ fn flawed_assemblies_are_refused_by_name() {
         matches!(&found, PlanError::OutsideOmega { id, .. } if id == "b"),
         "{found}"
     );
+    assert_eq!(
+        found.to_string(),
+        "element \"b\": found from [2.0, 2.0, 2.0] to [3.0, 3.0, 3.0] mm, \
+         expected inside Omega from [0.0, 0.0, 0.0] to [2.5, 2.5, 2.5] mm"
+    );
     let mut twice = two();
     twice[1].id = "a".to_owned();
     let found = refused(twice, None, sound);
