@@ -9,6 +9,8 @@ pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
 pub mod doctor;
+#[cfg(feature = "fleet")]
+pub mod fleet;
 pub mod history;
 pub mod host;
 pub mod init;
@@ -112,6 +114,9 @@ pub enum Command {
     Plan(plan::PlanArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
+    /// PostgreSQL behind the histories of many rigs
+    #[cfg(feature = "fleet")]
+    Fleet(fleet::FleetArgs),
     /// Unacknowledged alarms; acknowledge or shelve them
     Alarm(alarm::AlarmArgs),
     /// State of a lot; hold, release, close or reopen it
@@ -186,6 +191,8 @@ impl Cli {
             Command::Check(args) => check::run(args),
             Command::Plan(args) => plan::run(config, &args),
             Command::History(args) => history::run(&files, args),
+            #[cfg(feature = "fleet")]
+            Command::Fleet(args) => fleet::run(&files, &args),
             Command::Alarm(args) => alarm::run(db, &args),
             Command::Lot(args) => lot::run(db, &args),
             Command::Wear(args) => wear::run(db, &args),

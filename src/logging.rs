@@ -17,13 +17,15 @@ const JSON: &str = "json";
 const LEVELS: [&str; 6] = ["off", "error", "warn", "info", "debug", "trace"];
 
 /// Modules that `--log` knows: the crates of this program, and libraries that serve the page.
-const MODULES: [&str; 23] = [
+const MODULES: [&str; 26] = [
     "relayrig",
     "app",
     "bus",
+    "chamber",
     "config",
     "cycle",
     "dcon",
+    "fleet",
     "history",
     "lpm",
     "machine",
@@ -41,6 +43,7 @@ const MODULES: [&str; 23] = [
     "mio",
     "rustls",
     "tokio",
+    "tokio_postgres",
 ];
 
 /// Starts the log with the filter `words` of `--log`, else with that of `RUST_LOG`, else with `info`. A part of

@@ -112,7 +112,7 @@ impl Plant for Signals {
         self.input(module, channel).unwrap_or(f64::NAN)
     }
 
-    fn analog_out(&mut self, _module: &str, _volts: f64) {}
+    fn analog_out(&mut self, _module: &str, _channel: u8, _volts: f64) {}
 
     /// Returns the levels that the bench file gives; a terminal that it omits is open and reads 1.
     fn digital_in(&mut self, module: &str) -> u16 {

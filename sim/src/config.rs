@@ -182,6 +182,30 @@ pub struct RigFile {
     pub bins: Vec<Bin>,
     /// References on the interface board.
     pub reference: References,
+    /// Sockets of a rack in order of number; empty for a rig with a nest.
+    pub sockets: Vec<Socket>,
+    /// Certificate of the rack.
+    pub certificate: RackCertificate,
+}
+
+/// A socket of a rack.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Socket {
+    /// Number on the rack, which is its key in `[socket]`.
+    pub number: u64,
+    /// Input of its contact.
+    pub terminal: Terminal,
+    /// Number at the multiplexer.
+    pub select: u8,
+}
+
+/// What the certificate of a rack states; empty without one.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RackCertificate {
+    /// Mean error of the reference sensor, kelvin.
+    pub error_k: f64,
+    /// Temperature of each socket less that of the air, where the air is 75 K above ambient, kelvin.
+    pub offsets_k: Vec<f64>,
 }
 
 /// Reads `rig.toml`.
@@ -192,7 +216,7 @@ pub fn read_rig(files: &Files) -> Result<RigFile, ConfigError> {
     let rig = files.read("rig.toml")?;
     let ranges: BTreeMap<String, SupplyRange> = rig.get_or("supply_range", BTreeMap::new())?;
     let code_reader: Option<CodeReader> = rig.get(READER)?;
-    let mut lines = named(&rig, "line", line)?;
+    let mut lines = named(rig.get("line")?, line)?;
     lines.extend(code_reader.as_ref().map(|reader| LineSpec {
         name: READER.into(),
         baud: reader.baud,
@@ -201,7 +225,7 @@ pub fn read_rig(files: &Files) -> Result<RigFile, ConfigError> {
     Ok(RigFile {
         lines,
         code_reader,
-        modules: named(&rig, "module", module)?,
+        modules: named(rig.get("module")?, module)?,
         host_watchdog_ms: rig.get::<Table>("bus")?.get("host_watchdog_ms")?,
         instruments: rig.get_or("instrument", BTreeMap::new())?,
         analog_in: rig.get("analog_in")?,
@@ -211,25 +235,62 @@ pub fn read_rig(files: &Files) -> Result<RigFile, ConfigError> {
         digital_out: rig.get("digital_out")?,
         counter: rig.get_or("counter", BTreeMap::new())?,
         temperature: rig.get("temperature")?,
-        axis: named(&rig, "axis", |name, stop| {
+        sockets: sockets(&rig)?,
+        certificate: certificate(files, &rig)?,
+        axis: named(rig.get_or("axis", Tables::new())?, |name, stop| {
             Ok((name, (stop.get("point")?, stop.get("x_mm")?)))
         })?
         .into_iter()
         .collect(),
-        bins: named(&rig, "bin", bin)?,
+        bins: named(rig.get_or("bin", Tables::new())?, bin)?,
         reference: rig.get_or("reference", References::default())?,
     })
 }
 
-/// Reads the tables below a key, in order of name.
+/// Reads the certificate of the rack, if `rig.toml` names one.
+fn certificate(files: &Files, rig: &Table) -> Result<RackCertificate, ConfigError> {
+    let calibration: Option<Table> = rig.get("calibration")?;
+    let name: Option<String> = calibration.map_or(Ok(None), |it| it.get("rack"))?;
+    let Some(name) = name else {
+        return Ok(RackCertificate::default());
+    };
+    let file = files.read(&name)?;
+    let points: Vec<Table> = file.get::<Table>("chain")?.get("points")?;
+    let error = |it: &Table| -> Result<f64, ConfigError> {
+        Ok(it.get::<f64>("reading_c")? - it.get::<f64>("true_c")?)
+    };
+    let errors: Vec<f64> = points.iter().map(error).collect::<Result<_, _>>()?;
+    Ok(RackCertificate {
+        error_k: errors.iter().sum::<f64>() / errors.len().max(1) as f64,
+        offsets_k: file.get::<Table>("map")?.get("offset_k")?,
+    })
+}
+
+/// Tables below a key, by name.
+type Tables = BTreeMap<String, Table>;
+
+/// Reads tables in order of name.
 fn named<T>(
-    rig: &Table,
-    key: &'static str,
+    tables: Tables,
     read: impl Fn(String, Table) -> Result<T, ConfigError>,
 ) -> Result<Vec<T>, ConfigError> {
-    let tables: BTreeMap<String, Table> = rig.get(key)?;
     let each = tables.into_iter();
     each.map(|(name, keys)| read(name, keys)).collect()
+}
+
+/// Reads the sockets, in order of number.
+fn sockets(rig: &Table) -> Result<Vec<Socket>, ConfigError> {
+    let mut all = named(rig.get_or("socket", Tables::new())?, |number, keys| {
+        Ok(Socket {
+            number: number
+                .parse()
+                .map_err(|_| keys.wrong_name("the number of the socket"))?,
+            terminal: Terminal::of(&keys)?,
+            select: keys.get("select")?,
+        })
+    })?;
+    all.sort_by_key(|socket| socket.number);
+    Ok(all)
 }
 
 fn line(name: String, keys: Table) -> Result<LineSpec, ConfigError> {
@@ -265,7 +326,12 @@ impl Read for Terminal {
     const FORM: &'static str = "a table";
 
     fn read(entry: &Entry) -> Result<Self, ConfigError> {
-        let keys = entry.table()?;
+        Self::of(entry.table()?)
+    }
+}
+
+impl Terminal {
+    fn of(keys: &Table) -> Result<Self, ConfigError> {
         Ok(Self {
             module: keys.get("module")?,
             channel: keys.get_or("channel", 0)?,

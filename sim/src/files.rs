@@ -29,24 +29,6 @@ impl From<&Path> for Files {
 }
 
 impl Files {
-    /// Returns the names of all recipes in order; none when the folder cannot be read.
-    pub fn recipes(&self) -> Vec<String> {
-        let recipe = |name: &str| Some(name.strip_suffix(".toml")?.to_owned());
-        let mut names: Vec<String> = match self {
-            Self::Directory(dir) => std::fs::read_dir(dir.join("recipes"))
-                .into_iter()
-                .flatten()
-                .filter_map(|entry| recipe(entry.ok()?.file_name().to_str()?))
-                .collect(),
-            Self::Texts(texts) => texts
-                .keys()
-                .filter_map(|name| recipe(name.strip_prefix("recipes/")?))
-                .collect(),
-        };
-        names.sort();
-        names
-    }
-
     /// Returns the path of a file as messages show it.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         match self {

@@ -242,7 +242,7 @@ impl Plant for Fingerprints {
         f64::from(code.cast_signed()) / 32_768.0 * full_scale
     }
 
-    fn analog_out(&mut self, module: &str, volts: f64) {
+    fn analog_out(&mut self, module: &str, _channel: u8, volts: f64) {
         let code = (volts / 10.0 * 65_535.0).round() as u16;
         self.outputs.put(module, code, self.now_us);
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::scpi::bench::{Desk, Instruments};
-use crate::scpi::serve::{self, Plug};
+use crate::scpi::serve::{self, Plug, Served};
 use crate::{SharedRig, SimError};
 
 impl Desk for SharedRig {
@@ -29,12 +29,12 @@ impl SharedRig {
         serve::plugs(Arc::new(self.clone()), self.now_us())
     }
 
-    /// Opens the links of the instruments in real time and serves them until the runtime ends; returns the name of each
-    /// instrument with its link. Rig time is that of the pseudo-terminals where [`crate::pty::serve`] has begun before.
+    /// Opens the links of the instruments in real time and serves them until the result is dropped. Where
+    /// [`crate::pty::serve`] has begun before, the instruments share its rig time.
     ///
     /// # Errors
     /// Fails when the system refuses a socket or a pseudo-terminal.
-    pub async fn serve_instruments(&self) -> Result<Vec<(String, String)>, SimError> {
+    pub async fn serve_instruments(&self) -> Result<Served, SimError> {
         let origin = self.real_origin();
         serve::in_real_time(Arc::new(self.clone()), origin.into()).await
     }

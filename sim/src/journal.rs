@@ -181,9 +181,12 @@ impl Plant for JournaledWorld {
         self.scene.analog_in(module, channel)
     }
 
-    fn analog_out(&mut self, module: &str, volts: f64) {
-        self.carry(module, volts);
-        self.scene.analog_out(module, volts);
+    fn analog_out(&mut self, module: &str, channel: u8, volts: f64) {
+        // The first channel stands for the module.
+        if channel == 0 {
+            self.carry(module, volts);
+        }
+        self.scene.analog_out(module, channel, volts);
         self.record_overdrives();
     }
 

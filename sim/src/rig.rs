@@ -194,10 +194,11 @@ impl Rig {
         if self.faults.line_dead(READER, now_us) || self.port_back_us(line, now_us).is_some() {
             return Vec::new();
         }
-        let sent = codes.into_iter().map(|code| {
+        let sent = codes.into_iter().filter_map(|code| {
             let bytes = [code.as_bytes(), b"\r"].concat();
-            let at_us = now_us + wire_us(bytes.len(), spec.baud);
-            Reply { at_us, bytes }
+            let (extra_us, bytes) = self.faults.apply(b"", bytes, now_us)?;
+            let at_us = now_us + extra_us + wire_us(bytes.len(), spec.baud);
+            Some(Reply { at_us, bytes })
         });
         sent.collect()
     }
@@ -328,7 +329,7 @@ impl Rig {
             let Some(circuit) = self.scene.circuit() else {
                 return;
             };
-            instruments.act(number, self.now_us, circuit);
+            self.now_us = instruments.act(number, self.now_us, end_us, circuit);
         }
     }
 

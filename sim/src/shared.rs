@@ -15,7 +15,7 @@ use crate::rig::{Reply, Rig};
 use crate::scpi::of_rig;
 use crate::terminal::ModuleSpec;
 use crate::truth::{BodyTruth, Overdrive};
-use crate::world::{World, WorldOptions};
+use crate::world::{self, WorldOptions};
 
 /// Choice of rig, lot and faults.
 #[derive(Debug, Clone)]
@@ -85,9 +85,9 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
         file.modules.iter().any(|module| module.id == target)
             || file.lines.iter().any(|line| line.name == target)
     })?;
-    let world = World::build(&options.of_world(world_faults))?;
-    let modules = modules(&file, &table, options.seed, world.noise_seed())?;
-    let rig = Rig::new(Box::new(world), modules, file.lines, faults);
+    let (world, noise_seed) = world::build(&options.of_world(world_faults))?;
+    let modules = modules(&file, &table, options.seed, noise_seed)?;
+    let rig = Rig::new(world, modules, file.lines, faults);
     let rig = rig.with_instruments(instruments);
     Ok(SharedRig::new(rig))
 }
@@ -317,7 +317,12 @@ impl SharedRig {
         self.rig().record().refill(&options)
     }
 
-    /// Cancels the faults of the world that have not struck yet.
+    /// Forgets the bodies that have left the line, and their truth: a rig that runs lot after lot must not grow.
+    pub fn forget_finished(&self) {
+        self.rig().record().forget_finished();
+    }
+
+    /// Cancels the faults of the world that have not struck yet; parameters of the whole rig stay.
     pub fn cancel_faults(&self) {
         self.rig().record().cancel_faults();
     }

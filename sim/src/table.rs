@@ -203,6 +203,11 @@ impl Table {
         }
     }
 
+    /// Builds the error for an unfit name of this table.
+    pub fn wrong_name(&self, expected: &str) -> ConfigError {
+        self.place.error(&self.place.key, expected)
+    }
+
     /// Fails at the first key that the caller has not asked for.
     pub fn finish(&self) -> Result<(), ConfigError> {
         let asked = self.asked.borrow();
@@ -358,8 +363,8 @@ impl<T: Read> Read for BTreeMap<String, T> {
     }
 }
 
-/// Implements [`Read`] for a struct with a key per field, some with a value for a missing key; `finish` refuses other
-/// keys.
+/// Implements [`Read`] for a struct whose fields are keys. A field may have a default for a missing key; `finish`
+/// refuses unknown keys.
 macro_rules! read_fields {
     ($name:ident { $($field:ident $(= $absent:expr)?),* $(,)? } $(, $finish:ident)?) => {
         impl $crate::table::Read for $name {

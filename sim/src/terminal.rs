@@ -31,8 +31,8 @@ pub trait Plant {
     /// sensor); NaN when nothing is connected.
     fn analog_in(&mut self, module: &str, channel: u8) -> f64;
 
-    /// Sets the output stage of an analog output to `volts`, at every refresh of a slew.
-    fn analog_out(&mut self, module: &str, volts: f64);
+    /// Sets the output of an analog channel to `volts`; while the channel slews, at every refresh.
+    fn analog_out(&mut self, module: &str, channel: u8, volts: f64);
 
     /// Returns the electrical levels of all digital inputs, bit n = channel n; 1 is open (no signal).
     fn digital_in(&mut self, module: &str) -> u16;

@@ -60,7 +60,10 @@ pub trait WorldRecord {
         Vec::new()
     }
 
-    /// Cancels all faults of the world; a fault that has struck keeps its effects.
+    /// Forgets the bodies that have left the line.
+    fn forget_finished(&mut self) {}
+
+    /// Cancels the faults of the world that wait for their part or time; a fault that has struck keeps its effects.
     fn cancel_faults(&mut self) {}
 }
 

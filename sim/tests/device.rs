@@ -1,4 +1,5 @@
-//! Tests of modules, lines and instruments from the host's side.
+//! Tests of modules, lines, instruments and rigs from the host's side.
+#![allow(clippy::unwrap_used)]
 
 mod facts {
     mod bench;
@@ -9,4 +10,5 @@ mod facts {
     mod rig;
     mod ssr;
     mod terminal;
+    mod thermostat;
 }

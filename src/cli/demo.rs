@@ -23,7 +23,7 @@ pub struct DemoArgs {
     /// Rig to simulate, of those inside the program
     #[arg(long, value_name = "NAME", default_value = "jzc-22f", value_parser = rig::built_in(), conflicts_with = "config")]
     pub rig: String,
-    /// Recipe of the lot [default: jzc-22f-012 where the rig has it, else its first one]
+    /// Recipe of the lot [default: jzc-22f-012 or ssr-dc-60v-3a where the rig has it, else its first one]
     #[arg(long, value_name = "NAME")]
     pub recipe: Option<String>,
     /// Where the page listens.
@@ -35,7 +35,7 @@ pub struct DemoArgs {
     /// How the simulated rig keeps time
     #[arg(long, value_enum, default_value = "held")]
     pub pace: DemoPace,
-    /// Speed of the held rig, in multiples of the wall clock (0.1 to 100)
+    /// Speed of the held rig, in multiples of the wall clock (0.1 to 1000)
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = rig::speed)]
     pub speed: f64,
     /// Seed of rig and lot
@@ -74,7 +74,7 @@ pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
         recipe: args
             .recipe
             .clone()
-            .unwrap_or_else(|| first_recipe(&files.config)),
+            .unwrap_or_else(|| rig::usual_recipe(&files.config)),
         count: args.count,
         retest: None,
     };
@@ -86,13 +86,4 @@ pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
     }
     let page = args.page.clone();
     serve::run(files, &ServeArgs { page, rig }, Some(first))
-}
-
-/// Returns the recipe of a demo for which no other is named.
-fn first_recipe(config: &Folder) -> String {
-    const USUAL: &str = "jzc-22f-012";
-    let names = config::recipe_names(config);
-    let usual = names.iter().any(|it| it == USUAL);
-    let first = names.into_iter().next().filter(|_| !usual);
-    first.unwrap_or_else(|| USUAL.to_owned())
 }

@@ -13,6 +13,7 @@ mod lots;
 mod orders;
 pub(in crate::cli) mod paper;
 mod pareto;
+mod plans;
 mod prune;
 mod quality;
 mod query;
@@ -92,6 +93,12 @@ enum Command {
         relayrig history orders --who li --since today --refused\n  \
         relayrig history orders --order people")]
     Orders(orders::OrdersArgs),
+    /// Plans for tooling that people started, or the steps of one with who did them
+    #[command(
+        after_help = "Examples:\n  relayrig history plans\n  relayrig history plans 1 --json\n  \
+        relayrig history plans 1 --page --lang zh --out plan-1.html"
+    )]
+    Plans(plans::PlansArgs),
     /// Every occurrence of an alarm, with lot, acknowledgement and text
     #[command(after_help = "Examples:\n  relayrig history alarms --lot A\n  \
         relayrig history alarms --code part_lost --since 2026-03-01T00:00:00Z --json")]
@@ -165,6 +172,7 @@ fn dispatch(files: &Files, command: Command) -> anyhow::Result<Exit> {
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
         Command::Query(args) => query::run(&Archive::open(db)?, &args)?,
         Command::Alarms(args) => alarms::run(&Archive::open(db)?, &args)?,
+        Command::Plans(args) => plans::run(&Archive::open(db)?, &args)?,
         Command::Orders(args) => orders::run(&Archive::open(db)?, &args)?,
         Command::Stats(args) => stats::run(&Archive::open(db)?, &args)?,
         Command::Compare(args) => compare::run(&Archive::open(db)?, &args)?,

@@ -2,16 +2,16 @@
 //!
 //! Exit status: 0 an order exists, 1 none does (the locked set is named), 2 bad input.
 
-use super::history::paper::LangArg;
+use super::history::paper::{LangArg, write_page};
 use super::output::Output;
-use ::config::Folder;
+use ::config::{Folder, SCENE};
+use ::history::inquiry::paper::paper;
+use ::history::report::plan::sheet;
+use ::history::tooling::{ChangeoverRow, PlanAction, PlanStep};
 use ::plan::{Demands, Direction, Extent};
 use anyhow::ensure;
 use app::exit::Exit;
-use app::planning::{
-    Action, ChangeoverPlan, ChangeoverRow, LockedRow, PlanScene, Planning, StepRow, changeover,
-    interference, order,
-};
+use app::planning::{LockedRow, PlanScene, Planning, changeover, interference, order};
 use clap::{Args, Subcommand};
 use serde_json::json;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ use texts::{Lang, Message};
   relayrig plan interference
   relayrig plan disassembly --remove probe_housing --stay 'baseplate*'
   relayrig plan assembly --scene fixture.toml --forbid=-y --json
-  relayrig plan changeover --from config/scene.toml --to config/rigs/ssr/scene.toml
+  relayrig plan changeover --from config/scene.toml --to config/nests/body-18x12.toml --out changeover.html
 
 Exit status: 0 an order exists, 1 none does, 2 bad input.")]
 pub struct PlanArgs {
@@ -76,9 +76,12 @@ struct FormArgs {
     lang: Option<LangArg>,
 }
 
-/// Demands that every order takes.
+/// Demands that every order takes, and its paper.
 #[derive(Debug, Args)]
 struct DemandArgs {
+    /// HTML file to write instead of text, for A4: a step per row, drawn from above and from the front; - is stdout
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    out: Option<PathBuf>,
     /// Element that stays; a * at its end stands for any ending
     #[arg(long, value_name = "ID")]
     stay: Vec<String>,
@@ -174,14 +177,14 @@ impl FormArgs {
 
 impl SceneArgs {
     fn load(&self, config: &Folder) -> anyhow::Result<PlanScene> {
-        let path = match &self.scene {
-            Some(path) => path.clone(),
+        let omega = self.form.omega()?;
+        match &self.scene {
+            Some(path) => PlanScene::load(path, omega),
             None => {
                 config.check_exists()?;
-                config.path("scene.toml")
+                PlanScene::of_folder(config, SCENE, omega)
             }
-        };
-        PlanScene::load(&path, self.form.omega()?)
+        }
     }
 }
 
@@ -204,48 +207,42 @@ pub fn run(config: &Folder, args: &PlanArgs) -> anyhow::Result<Exit> {
         }
         Question::Disassembly(args) => {
             let demands = args.demands.demands(&args.remove);
-            planned(config, &args.scene, &demands, Action::Remove)
+            let planning = order(&args.scene.load(config)?, &demands, PlanAction::Remove)?;
+            answered(&planning, &args.demands, &args.scene.form)
         }
         Question::Assembly(args) => {
             let demands = args.demands.demands(&[]);
-            planned(config, &args.scene, &demands, Action::Add)
+            let planning = order(&args.scene.load(config)?, &demands, PlanAction::Add)?;
+            answered(&planning, &args.demands, &args.scene.form)
         }
-        Question::Changeover(args) => changed(args),
+        Question::Changeover(args) => {
+            let omega = args.form.omega()?;
+            let from = PlanScene::load(&args.from, omega)?;
+            let to = PlanScene::load(&args.to, omega)?;
+            let planning = changeover(&from, &to, &args.demands.demands(&[]))?;
+            answered(&planning, &args.demands, &args.form)
+        }
     }
 }
 
-fn planned(
-    config: &Folder,
-    args: &SceneArgs,
-    demands: &Demands,
-    action: Action,
-) -> anyhow::Result<Exit> {
-    match order(&args.load(config)?, demands, action)? {
-        Planning::Steps(steps) => {
-            print(&of_steps(&steps, &args.form))?;
-            Ok(Exit::Done)
-        }
-        Planning::Locked(locked) => told_locked(&locked, &args.form),
+fn answered(planning: &Planning, args: &DemandArgs, form: &FormArgs) -> anyhow::Result<Exit> {
+    let plan = match planning {
+        Planning::Plan(plan) => plan,
+        Planning::Locked(locked) => return told_locked(locked, form),
+    };
+    if let Some(out) = &args.out {
+        write_page(out, &sheet(&paper(form.lang()), plan))?;
+        return Ok(Exit::Done);
     }
+    let summary = plan.summary.as_ref();
+    let mut lines = summary.map_or(Vec::new(), |it| of_summary(it, form));
+    lines.extend(of_steps(&plan.steps, form));
+    print(&lines)?;
+    Ok(Exit::Done)
 }
 
-fn changed(args: &ChangeoverArgs) -> anyhow::Result<Exit> {
-    let omega = args.form.omega()?;
-    let from = PlanScene::load(&args.from, omega)?;
-    let to = PlanScene::load(&args.to, omega)?;
-    match changeover(&from, &to, &args.demands.demands(&[]))? {
-        ChangeoverPlan::Steps { summary, steps } => {
-            let mut lines = of_summary(&summary, &args.form);
-            lines.extend(of_steps(&steps, &args.form));
-            print(&lines)?;
-            Ok(Exit::Done)
-        }
-        ChangeoverPlan::Locked(locked) => told_locked(&locked, &args.form),
-    }
-}
-
-fn of_steps(steps: &[StepRow], form: &FormArgs) -> Vec<String> {
-    let line = |step: &StepRow| match form.json {
+fn of_steps(steps: &[PlanStep], form: &FormArgs) -> Vec<String> {
+    let line = |step: &PlanStep| match form.json {
         true => json!(step).to_string(),
         false => step.say(form.lang()),
     };

@@ -48,6 +48,21 @@ pub fn built_in() -> PossibleValuesParser {
     PossibleValuesParser::new(Folder::built_in_rigs())
 }
 
+/// Returns the recipe that a command takes without `--recipe`: that of the default relay or of the DC
+/// solid-state relay, or the first one of a rig with neither.
+#[cfg(feature = "sim")]
+pub fn usual_recipe(config: &Folder) -> String {
+    const USUAL: [&str; 2] = ["jzc-22f-012", "ssr-dc-60v-3a"];
+    let names = config::recipe_names(config);
+    let usual = USUAL
+        .into_iter()
+        .find(|it| names.iter().any(|name| name == it));
+    let chosen = usual
+        .map(str::to_owned)
+        .or_else(|| names.into_iter().next());
+    chosen.unwrap_or_else(|| USUAL[0].to_owned())
+}
+
 impl RigArgs {
     /// Returns the rig of these arguments; a simulated one writes its true values to `truth`.
     ///
@@ -99,12 +114,12 @@ pub(super) fn port(text: &String) -> anyhow::Result<LinePort> {
 
 /// The text is no speed in the accepted range.
 #[derive(Debug, thiserror::Error)]
-#[error("found {0}, expected a number from 0.1 to 100")]
+#[error("found {0}, expected a number from 0.1 to 1000")]
 pub struct SpeedError(String);
 
 /// Reads a speed, in multiples of the wall clock.
 pub fn speed(text: &str) -> Result<f64, SpeedError> {
     let found = text.parse().ok();
-    let sensible = found.filter(|it| (0.1..=100.0).contains(it));
+    let sensible = found.filter(|it| (0.1..=1000.0).contains(it));
     sensible.ok_or_else(|| SpeedError(text.to_owned()))
 }

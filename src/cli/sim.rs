@@ -35,7 +35,7 @@ pub struct SimArgs {
     /// World instead of config/sim.toml
     #[arg(long, value_name = "FILE")]
     pub world: Option<PathBuf>,
-    /// Recipe whose parts are in the magazine; without it jzc-22f-012, or the first recipe of a rig that has no such part
+    /// Recipe whose parts are in the magazine; without it jzc-22f-012, ssr-dc-60v-3a, or the first recipe of the rig
     #[arg(long, value_name = "NAME")]
     pub recipe: Option<String>,
     /// Fault by name
@@ -93,7 +93,10 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
         None => rigsim::build(&Options {
             world: args.world.clone(),
             seed: args.seed,
-            recipe: args.recipe.clone().unwrap_or_else(|| usual_recipe(&files)),
+            recipe: args
+                .recipe
+                .clone()
+                .unwrap_or_else(|| super::rig::usual_recipe(config)),
             files,
             parts: None,
             reference_parts: true,
@@ -119,8 +122,8 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
         .build()?;
     let mut truth = args.truth.as_deref().map(TruthFile::create).transpose()?;
     runtime.block_on(async {
-        let links = rig.serve_instruments().await?;
-        let links: BTreeMap<String, String> = links.into_iter().collect();
+        let served = rig.serve_instruments().await?;
+        let links: BTreeMap<String, String> = served.links.iter().cloned().collect();
         match links.is_empty() {
             true => println!("{}", json!({ "lines": lines })),
             false => println!("{}", json!({ "lines": lines, "instruments": links })),
@@ -141,16 +144,6 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Returns the recipe of the default relay, or the first one of a rig without it.
-fn usual_recipe(files: &rigsim::Files) -> String {
-    let usual = "jzc-22f-012".to_owned();
-    let recipes = files.recipes();
-    match recipes.contains(&usual) {
-        true => usual,
-        false => recipes.into_iter().next().unwrap_or(usual),
-    }
-}
-
 /// Serves the instruments of a file until the command is interrupted.
 fn serve_instruments(file: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
     let bench = rigsim::scpi::file::build(file, args.seed, &args.fault)?;
@@ -159,8 +152,8 @@ fn serve_instruments(file: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
         .build()?;
     runtime.block_on(async {
         let mut interrupts = Interrupts::listen()?;
-        let links = rigsim::scpi::serve::real_time(&bench).await?;
-        let links: BTreeMap<String, String> = links.into_iter().collect();
+        let served = rigsim::scpi::serve::real_time(&bench).await?;
+        let links: BTreeMap<String, String> = served.links.iter().cloned().collect();
         println!("{}", json!({ "instruments": links }));
         interrupts.next().await;
         Ok(Exit::Done)

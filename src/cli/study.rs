@@ -31,7 +31,10 @@ pub enum Document {
   relayrig study coverage --json
   relayrig study cycle --out figures
   relayrig study collision --out figures
+  relayrig study chamber --out figures
   relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
+  relayrig study plan --seeds 2000
+  relayrig study ssr --out figures
   relayrig study promises --seeds 20 --lots 600
   relayrig study promises --term operation_scatter_mv --lots 0
   relayrig study storm --seeds 10000
@@ -56,7 +59,8 @@ pub struct StudyArgs {
     /// stations
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of lots, with seeds 1 to N; `pace` runs seed 1 N times
+    /// Number of lots, with seeds 1 to N; `pace` runs seed 1 N times; of `plan`, number of random
+    /// scenes, of `ssr`, of made-up parts
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: Option<u64>,
     /// First seed of `storm` [default: 1]
@@ -101,7 +105,19 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
         return Ok(Exit::Done);
     };
     if wanted == Study::Collision {
-        return collisions(args);
+        return drawn(args, studies::collision, "collision-speed.svg");
+    }
+    if wanted == Study::Chamber {
+        return drawn(args, studies::controllers, "chamber-errors.svg");
+    }
+    if wanted == Study::Thermostat {
+        return thermostats(args);
+    }
+    if wanted == Study::Plan {
+        return plans(config, args);
+    }
+    if wanted == Study::Ssr {
+        return solid_state(args);
     }
     match (wanted == Study::Transient, &args.cases, args.rtol) {
         (true, _, _) => return transients(args),
@@ -138,16 +154,59 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
     published(&report, args)
 }
 
-fn collisions(args: &StudyArgs) -> anyhow::Result<Exit> {
+/// Runs a study without lots, and writes its second plot under this name.
+fn drawn(
+    args: &StudyArgs,
+    study: fn() -> anyhow::Result<(Report, String)>,
+    plot_name: &str,
+) -> anyhow::Result<Exit> {
     if args.seeds.is_some() || args.parts.is_some() || args.world.is_some() {
-        bail!("study collision: --seeds, --parts and --world belong to studies that run lots");
+        let name = args.name.and_then(|it| it.to_possible_value());
+        let name = name.map(|it| it.get_name().to_owned()).unwrap_or_default();
+        bail!("study {name}: --seeds, --parts and --world belong to studies that run lots");
     }
-    let (report, plot) = studies::collision()?;
+    plotted(&study()?, args, plot_name)
+}
+
+fn thermostats(args: &StudyArgs) -> anyhow::Result<Exit> {
+    if args.world.is_some() {
+        bail!(
+            "study thermostat: --world belongs to studies that run lots; it has worlds of its own"
+        );
+    }
+    let (seeds, sockets) = Study::Thermostat.usual().unwrap_or((1, 1));
+    let sockets = usize::try_from(args.parts.unwrap_or(sockets))?;
+    let made = studies::thermostat(args.seeds.unwrap_or(seeds), sockets)?;
+    plotted(&made, args, "thermostat-batch.svg")
+}
+
+/// Publishes a report, and writes its second plot under this name.
+fn plotted(
+    (report, plot): &(Report, String),
+    args: &StudyArgs,
+    name: &str,
+) -> anyhow::Result<Exit> {
     if let Some(folder) = &args.out {
         made(folder)?;
-        written(&folder.join("collision-speed.svg"), &plot)?;
+        written(&folder.join(name), plot)?;
     }
-    published(&report, args)
+    published(report, args)
+}
+
+fn solid_state(args: &StudyArgs) -> anyhow::Result<Exit> {
+    if args.parts.is_some() || args.world.is_some() {
+        bail!("study ssr: --parts and --world belong to studies that run lots");
+    }
+    let parts = args.seeds.unwrap_or(studies::SSR_PARTS);
+    published(&studies::ssr(parts), args)
+}
+
+fn plans(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
+    if args.parts.is_some() || args.world.is_some() {
+        bail!("study plan: --parts and --world belong to studies that run lots");
+    }
+    let scenes = args.seeds.unwrap_or(studies::PLAN_SCENES);
+    published(&studies::plan(&config.into(), scenes)?, args)
 }
 
 /// Writes the files of `--out`, prints the report and returns the exit status of its bars.

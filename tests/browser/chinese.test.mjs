@@ -190,6 +190,33 @@ test("the guard's refusal has Chinese words", async () => {
   await done(page);
 });
 
+test("plans for tooling have Chinese words", async () => {
+  const page = await chinese({ role: "maintainer", path: "/#tooling" });
+  const files = [...names, "scene.toml", "nests/body-18x12.toml", "x", "y", "z"];
+  await page.waitForSelector("#t_from option", { state: "attached" });
+  await page.selectOption("#t_kind", "disassembly");
+  await none(page, "choice", files);
+  await page.click("#t_show");
+  await page.waitForFunction(() => document.getElementById("t_answer").textContent !== "");
+  await none(page, "nothing chosen", files);
+  await page.selectOption("#t_kind", "changeover");
+  await page.click("#t_start");
+  await page.waitForSelector("[data-tick]");
+  await page.click("[data-tick]");
+  await page.waitForSelector("#t_steps .done");
+  await none(page, "under way", files);
+  await picture(page, "chinese-tooling");
+  await page.click("#t_abandon");
+  await page.fill("#t_reason", "4711");
+  await page.click("#t_ask_go");
+  await page.waitForSelector("#t_show:visible");
+  await none(page, "abandoned", files);
+  await page.goto(rig.url + "/api/plans/paper?plan=1&lang=zh");
+  await picture(page, "chinese-paper-plan");
+  await none(page, "plan on paper", files);
+  await done(page);
+});
+
 test("paper has Chinese words", async () => {
   const page = await chinese({});
   const { lot, recipe } = await rig.view();

@@ -15,6 +15,9 @@ const PROGRAM = process.env.RELAYRIG;
 /** Starts `relayrig demo` with `words` over the files `name`, which must be unique; resolves when the server listens. */
 export const start = (name, ...words) => begin(name, ["demo", ...words]);
 
+/** Does the same over the configuration in the folder `config`. */
+export const startIn = (config, name, ...words) => begin(name, ["demo", ...words], config);
+
 /** Does the same with `relayrig serve --sim`, which starts no lot. */
 export const serve = (name, ...words) => begin(name, ["serve", "--sim", ...words]);
 

@@ -28,27 +28,30 @@ impl Drop for Rig {
 impl Rig {
     /// Starts the rig with its ports linked in `ports`; `faults` are further arguments.
     pub fn start(workshop: &Workshop, faults: &str) -> Self {
+        let line = format!("sim --seed 1 --link ports --journal {faults}");
+        Self::begin(workshop, &line).0
+    }
+
+    /// Starts the rig with this command line; returns it with the object that names its ports.
+    pub fn begin(workshop: &Workshop, line: &str) -> (Self, Value) {
         // Without the limit a silent rig would block the test.
-        let mut process = workshop.start_for(
-            "120",
-            &format!("sim --seed 1 --link ports --journal {faults}"),
-        );
+        let mut process = workshop.start_for("120", line);
         let told = BufReader::new(process.stdout.take().unwrap());
         let mut rig = Self { process, told };
-        let lines = rig.next().expect("a rig that prints its ports");
-        assert!(lines["lines"].is_object(), "{lines}");
-        rig
+        let ports = rig.next().expect("a rig that prints its ports");
+        assert!(ports["lines"].is_object(), "{ports}");
+        (rig, ports)
     }
 
     /// Returns the next event; `None` after its end.
-    fn next(&mut self) -> Option<Value> {
+    pub fn next(&mut self) -> Option<Value> {
         let mut line = String::new();
         let count = self.told.read_line(&mut line).unwrap();
         (count > 0).then(|| serde_json::from_str(&line).unwrap())
     }
 
     /// Returns the outputs of each digital module when the first watchdog expires.
-    fn outputs_before_expiry(&mut self) -> BTreeMap<String, f64> {
+    pub fn outputs_before_expiry(&mut self) -> BTreeMap<String, f64> {
         let told = std::iter::from_fn(|| self.next());
         let outputs = told
             .take_while(|told| told["type"] != "expired")
@@ -62,7 +65,7 @@ impl Rig {
     }
 
     /// Returns the next `count` expiring watchdogs; fewer when the rig ends.
-    fn expiries(&mut self, count: usize) -> Vec<Value> {
+    pub fn expiries(&mut self, count: usize) -> Vec<Value> {
         let told = std::iter::from_fn(|| self.next());
         told.filter(|told| told["type"] == "expired")
             .take(count)
@@ -114,7 +117,7 @@ fn number(value: &toml::Value) -> f64 {
 
 /// Most starts of a lot: on a busy computer the controller may be late for a watchdog or end with an alarm, which proves
 /// nothing.
-const TRIES: usize = 20;
+pub const TRIES: usize = 20;
 
 /// Starts a lot and kills its controller while the coil is driven. Returns the expired watchdogs, provided that all expired
 /// after the kill.

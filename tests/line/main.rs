@@ -24,6 +24,7 @@
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
 //! - `stories`: scripts of troubles and orders with their expected course.
 //! - `ssr`: lots of solid-state relays, compared with the truth of their world.
+//! - `ssr_killed`: controllers killed in the middle of a test of a solid-state relay.
 //! - `storm`: random transactions under all faults of a line; the fingerprint of each value names its origin.
 //! - `tempest`: the whole program under faults, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes while a lot runs.
@@ -82,12 +83,16 @@ mod serials;
 mod serve;
 #[cfg(feature = "sim")]
 mod ssr;
+#[cfg(all(feature = "sim", unix))]
+mod ssr_killed;
 #[cfg(feature = "sim")]
 mod stories;
 #[cfg(feature = "sim")]
 mod storm;
 #[cfg(feature = "sim")]
 mod tempest;
+#[cfg(feature = "sim")]
+mod thermostat;
 #[cfg(feature = "sim")]
 mod troubles;
 #[cfg(all(feature = "sim", unix))]

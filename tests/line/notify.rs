@@ -49,7 +49,13 @@ impl Notified {
     /// Returns the lines of the next message.
     fn next(&self) -> Vec<String> {
         let mut bytes = [0; 4096];
-        let count = self.socket.recv(&mut bytes).unwrap();
+        // A signal to this process, such as the end of another test's child, interrupts the call.
+        let count = loop {
+            match self.socket.recv(&mut bytes) {
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+                received => break received.unwrap(),
+            }
+        };
         let text = std::str::from_utf8(&bytes[..count]).unwrap();
         text.lines().map(str::to_owned).collect()
     }

@@ -208,6 +208,24 @@ fn printed_answers_are_in_the_language_asked_for() {
 }
 
 #[test]
+fn a_printed_plan_draws_every_step_in_both_languages() {
+    let workshop = Workshop::new("plan-paper");
+    let line = format!("plan changeover --from {DEFAULT} --to {OTHER} --stay baseplate*");
+    let count = steps(&workshop.run(&format!("{line} --json")).with_status(0)).len();
+    for (lang, word) in [("en", "Changeover of tooling"), ("zh", "工装换型")] {
+        let page = workshop
+            .run(&format!("{line} --lang {lang} --out -"))
+            .with_status(0)
+            .stdout;
+        assert!(page.starts_with("<!DOCTYPE html>") && page.contains(word));
+        assert_eq!(page.matches("class=\"plan_picture above\"").count(), count);
+        assert_eq!(page.matches("class=\"plan_picture front\"").count(), count);
+        assert!(page.matches("class=\"moves\"").count() >= 2 * count);
+        assert!(page.contains("class=\"holds\""));
+    }
+}
+
+#[test]
 fn the_second_nest_makes_a_rig() {
     let workshop = Workshop::new("plan-nest");
     workshop.write(DEFAULT, &workshop.read(OTHER));

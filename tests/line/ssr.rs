@@ -62,3 +62,119 @@ fn a_lost_reply_makes_good_parts_void_never_failed() {
     );
     assert!(!verdicts.contains(&"fail"), "{said}");
 }
+
+#[test]
+fn jaws_stay_closed_without_the_input_that_they_need() {
+    let workshop = Workshop::new("ssr-interlock");
+    workshop.change(
+        "config/rigs/ssr/rig.toml",
+        "timeout_ms = 800, to_rest_needs = \"output_safe\" }   #",
+        "timeout_ms = 800, to_rest_needs = \"short_seen\" }   #",
+    );
+    let said = workshop.run(&format!("{RUN} --lot A --count 1 --seed 1"));
+    let cause = said.with_status(3).objects().pop().unwrap()["cause"].take();
+    assert_eq!(cause["code"], "motion_refused");
+    assert_eq!(
+        cause["text"],
+        "clamp: open refused: Left jaw: needs the signal \"Short seen\", which is off or was not read recently"
+    );
+    let landed = workshop.count("SELECT count(*) FROM part WHERE landed_at_us IS NOT NULL");
+    assert_eq!(landed, 0);
+}
+
+#[test]
+fn an_alarm_file_has_the_last_exchanges_of_each_instrument() {
+    let workshop = Workshop::new("ssr-alarm-files");
+    let said = workshop.run(&format!(
+        "{RUN} --lot A --count 9 --seed 1 --fault reply_lost=smu_in:0.4@3"
+    ));
+    said.with_status(3);
+    let of = |name: &str| {
+        let files = std::fs::read_dir(&workshop.folder).unwrap();
+        let mut names = files.map(|it| it.unwrap().file_name().into_string().unwrap());
+        let end = format!("-{name}.trace");
+        let file = names.find(|it| it.ends_with(&end));
+        workshop.read(&file.unwrap_or_else(|| panic!("no trace of {name}")))
+    };
+    for name in ["smu_in", "smu_out", "digitizer", "pulse_source"] {
+        let text = of(name);
+        let head = text.lines().next().unwrap();
+        assert!(head.starts_with(&format!("# instrument {name} ")), "{head}");
+        assert!(text.contains(" > *IDN?"), "{name}: {head}");
+    }
+    let head = of("smu_in");
+    assert!(
+        head.starts_with("# instrument smu_in smu-2450 tcp:192.168.10.11:5025 KEITHLEY"),
+        "{head}"
+    );
+}
+
+/// Faults of an instrument that begin in the third second, and words of the message that names each.
+const INSTRUMENT_FAULTS: [(&str, &str); 8] = [
+    (
+        "--fault over_range=smu_in:1@3",
+        ":READ?: the result is over the range of the instrument.",
+    ),
+    (
+        "--fault not_a_number=smu_in:0.1@3",
+        ":READ?: the instrument has no number for the result.",
+    ),
+    (
+        "--fault block_cut=digitizer:1@3",
+        ":WAV:DATA?: the reply is damaged or of another form: 1012 bytes received, then nothing.",
+    ),
+    (
+        "--fault errors_overflow=smu_in:0.05@3",
+        "The error queue of the instrument has overflowed",
+    ),
+    (
+        "--fault local=smu_in:0.05@3",
+        "The instrument is in local mode",
+    ),
+    (
+        "--fault power_cycle=smu_in:0.05@3",
+        "The instrument was switched off and on",
+    ),
+    (
+        "--fault wrong_identity=smu_in:1@3 --fault closed_before=smu_in:0.05@3",
+        "Another instrument answers: found RELAYRIG,OTHER",
+    ),
+    (
+        "--fault port_busy=smu_in:1@3 --fault closed_before=smu_in:0.05@3",
+        "The link is down after 3 attempts",
+    ),
+];
+
+#[test]
+fn an_instrument_in_trouble_is_named_and_fails_no_part() {
+    for (number, (faults, message)) in INSTRUMENT_FAULTS.iter().enumerate() {
+        let workshop = Workshop::new(&format!("ssr-trouble-{number}"));
+        let said = workshop.run(&format!("{RUN} --lot A --count 9 --seed 3 {faults}"));
+        assert!([0, 3].contains(&said.status), "{faults}: {said}");
+        let rows = objects(&said.stdout);
+        let parts = rows.iter().filter(|it| it["type"] == "part");
+        let verdicts: Vec<&str> = parts.map(|it| it["verdict"].as_str().unwrap()).collect();
+        assert!(verdicts.contains(&"void"), "{faults}: {said}");
+        assert!(!verdicts.contains(&"fail"), "{faults}: {said}");
+        assert!(said.stdout.contains(message), "{faults}: {said}");
+        let alarms = workshop.texts("SELECT DISTINCT code FROM alarm");
+        let is_raised = alarms.iter().any(|it| it == "instrument_trouble");
+        assert_eq!(is_raised, said.status == 3, "{faults}: {alarms:?}");
+    }
+}
+
+#[test]
+fn a_silent_module_with_an_interlock_input_is_named() {
+    for from_s in [3.0, 4.1, 5.3] {
+        let workshop = Workshop::new(&format!("ssr-silent-{from_s}"));
+        let said = workshop.run(&format!(
+            "{RUN} --lot A --count 9 --seed 3 --fault silence=board_di@{from_s}"
+        ));
+        let cause = said.with_status(3).objects().pop().unwrap()["cause"].take();
+        let text = cause["text"].as_str().unwrap();
+        assert!(
+            text.starts_with("line measure, module 08, "),
+            "from {from_s} s: {text}"
+        );
+    }
+}

@@ -274,7 +274,7 @@ pub fn calibration_refusal(
     if source.is_simulated() {
         return Ok(None);
     }
-    match recipe.device.part().nominal_v {
+    match recipe.device.calibrated_for() {
         Some(nominal_v) => calibration::refusal(db, nominal_v),
         None => Ok(None),
     }

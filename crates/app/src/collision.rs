@@ -103,22 +103,15 @@ impl LoadedScene {
 
 /// Loads a scene file and returns it with its text and format; the extension says the format.
 pub(crate) fn load_scene(path: &Path) -> anyhow::Result<(Scene, String, Format)> {
-    let is = |known: &str| {
-        path.extension()
-            .is_some_and(|it| it.eq_ignore_ascii_case(known))
-    };
-    let format = if is("toml") {
-        Format::Toml
-    } else if is("json") {
-        Format::Json
-    } else {
-        bail!(
-            "{}: found no known extension, expected .toml or .json",
-            path.display()
-        )
-    };
     let text = std::fs::read_to_string(path)
         .map_err(|error| anyhow!("{}: not readable: {error}", path.display()))?;
+    let (scene, format) = read_scene(path, &text)?;
+    Ok((scene, text, format))
+}
+
+/// Reads the text of the scene file `path`; the folder of the file holds its meshes.
+pub(crate) fn read_scene(path: &Path, text: &str) -> anyhow::Result<(Scene, Format)> {
+    let format = format_of(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut files = |name: &str| {
         std::fs::read(folder.join(name)).map_err(|error| MeshFault::File(error.to_string()))
@@ -128,9 +121,26 @@ pub(crate) fn load_scene(path: &Path) -> anyhow::Result<(Scene, String, Format)>
         actuators: &actuators,
         bodies: &part_names(),
     };
-    let scene = read_scene_of_rig(&text, format, &mut files, &elsewhere)
+    let scene = read_scene_of_rig(text, format, &mut files, &elsewhere)
         .with_context(|| path.display().to_string())?;
-    Ok((scene, text, format))
+    Ok((scene, format))
+}
+
+fn format_of(path: &Path) -> anyhow::Result<Format> {
+    let is = |known: &str| {
+        path.extension()
+            .is_some_and(|it| it.eq_ignore_ascii_case(known))
+    };
+    if is("toml") {
+        Ok(Format::Toml)
+    } else if is("json") {
+        Ok(Format::Json)
+    } else {
+        bail!(
+            "{}: found no known extension, expected .toml or .json",
+            path.display()
+        )
+    }
 }
 
 fn built(scene: &Scene) -> anyhow::Result<(Model, Vec<ElementKey>)> {

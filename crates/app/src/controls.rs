@@ -1,6 +1,8 @@
 //! Controls that page, signals and scripts share with a run: stop flags and the view. They outlive the run.
 
+use super::stop_signals::StopSignals;
 use super::traces::Traces;
+use anyhow::Context;
 use machine::view::{LineTraffic, View};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -34,10 +36,14 @@ impl Controls {
         }
     }
 
-    /// Makes Ctrl-C stop the lot, and a second Ctrl-C abort it. Panics outside a runtime.
-    pub fn stop_on_signals(&self) {
+    /// Makes Ctrl-C stop the lot, a second Ctrl-C abort it, and a third one end the program, until the returned thread
+    /// is dropped.
+    ///
+    /// # Errors
+    /// Fails when the operating system refuses the handlers or the thread.
+    pub fn stop_on_signals(&self) -> anyhow::Result<StopSignals> {
         let flags = [Arc::clone(&self.stop), Arc::clone(&self.abort)];
-        tokio::spawn(watch_signals(flags));
+        StopSignals::listen(flags).context("catching Ctrl-C")
     }
 
     /// Returns true once a stop or an abort has been ordered.
@@ -60,22 +66,6 @@ impl Controls {
             traces.map_or_else(Vec::new, |traces| traces.messages(last))
         }
     }
-}
-
-/// Sets the first flag at the first Ctrl-C or SIGTERM (the run then finishes the parts inside), and the second flag at
-/// the second signal (the run then ends at once). A signal that arrives while this function logs is not lost.
-async fn watch_signals(flags: [Arc<AtomicBool>; 2]) -> std::io::Result<()> {
-    let mut interrupts = Interrupts::listen()?;
-    let said = [
-        "stopping when the parts inside are finished; once more stops at once",
-        "stopping at once, outputs safe",
-    ];
-    for (flag, said) in flags.into_iter().zip(said) {
-        interrupts.next().await;
-        flag.store(true, Ordering::Release);
-        tracing::warn!("{said}");
-    }
-    Ok(())
 }
 
 /// Ctrl-C and SIGTERM, which end every command in the same way.

@@ -10,7 +10,8 @@
 //! - written as a row by `lot/journal.rs` (a refused lot: `admission.rs`) and `history/src/run_end.rs`;
 //! - printed by `src/cli/terminal.rs` (`--json`), `src/cli/lot.rs` (`lot show`) and `src/cli/history/lots.rs`.
 //!
-//! Three causes get no row: `not_calibrated`, a `history_lost` at the end of the run, and `script` (`story/mod.rs`).
+//! Four causes get no row: `not_calibrated`, a `history_lost` at the end of the run, `script` (`story/mod.rs`), and
+//! `hung` (`stop_signals.rs`), which is only logged.
 
 use machine::station::trouble::Alarm;
 use serde::Serialize;
@@ -91,6 +92,13 @@ impl Cause {
     pub fn assertion() -> Self {
         let text = "an assertion of the control cycle failed; the modules' watchdogs make the outputs safe";
         Self::new(ASSERTION, text)
+    }
+
+    /// `hung`: the run does not return after a signal that ends it at once.
+    pub fn hung() -> Self {
+        let text =
+            "the control cycle does not return; the modules' watchdogs make the outputs safe";
+        Self::new("hung", text)
     }
 
     /// `history_lost`: the history cannot be written; `why` is the error.

@@ -66,6 +66,10 @@ mod tests {
         ];
         let codes: Vec<&str> = all.iter().map(Failure::code).collect();
         assert_eq!(codes, Failure::CODES);
+        let short: Vec<String> = texts::plain().map(|it| it.id.to_owned()).collect();
+        for code in codes {
+            assert!(short.contains(&format!("failure-{code}")), "{code}");
+        }
         for failure in &all {
             for lang in Lang::ALL {
                 assert!(

@@ -52,6 +52,7 @@ pub mod generate;
 pub mod host_check;
 pub mod import;
 pub mod instrument;
+mod instrument_log;
 mod instrument_tasks;
 pub mod links;
 pub mod lot;
@@ -62,11 +63,14 @@ pub mod planning;
 pub mod progress;
 pub mod real_time;
 pub mod restore;
+#[cfg_attr(not(feature = "fleet"), path = "sending_absent.rs")]
+mod sending;
 pub mod service;
 mod signals;
 #[cfg(feature = "sim")]
 pub mod simulated;
 pub mod source;
+pub mod stop_signals;
 #[cfg(feature = "sim")]
 pub mod story;
 mod trace_files;
@@ -84,6 +88,7 @@ use lot::{LotContext, LotRunner, Purpose, Subscriber};
 use order::{Files, LotOrder};
 use order_queue::OrderQueue;
 use source::RigSource;
+use std::pin::pin;
 use std::time::Duration;
 use tokio::sync::mpsc;
 
@@ -127,13 +132,14 @@ pub fn run_answered(
         return Ok(Exit::Trouble(cause));
     }
     let controls = Controls::new(false);
+    let _sending = sending::start(files, &controls)?;
     let runner = LotRunner {
         db: &files.db,
         context: LotContext::new(&plant, (order, &recipe), source, purpose),
         controls: &controls,
     };
+    let _signals = controls.stop_on_signals()?;
     block_on(source, async {
-        controls.stop_on_signals();
         let (orders, taken) = mpsc::channel(1);
         let mut outer = Answering {
             answers,
@@ -153,20 +159,28 @@ pub fn block_on<T>(
     work: impl Future<Output = anyhow::Result<T>>,
 ) -> anyhow::Result<T> {
     let runtime = runtime(source)?;
-    let done = runtime.block_on(work);
+    let mut done = None;
+    {
+        let work = pin!(async { done = Some(work.await) });
+        bus::block_on(&runtime, work);
+    }
     runtime.shutdown_timeout(Duration::from_secs(1));
-    done
+    done.context("the run has no result")?
 }
 
-/// Creates a runtime of one thread for runs on `source`; its clock is paused when rig time is virtual.
+/// Creates a runtime of one thread for runs on `source`. When rig time is virtual, its clock is paused and it watches no
+/// file or socket: a rig in this process has none, and each step of the clock would ask the kernel for events.
 ///
 /// # Errors
 /// Fails when the operating system refuses it.
 pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
     let mut builder = tokio::runtime::Builder::new_current_thread();
-    builder.enable_all();
     #[cfg(feature = "sim")]
-    builder.start_paused(source.is_virtual());
+    if source.is_virtual() {
+        let built = builder.enable_time().start_paused(true).build();
+        return built.context("starting the runtime");
+    }
     let _ = source;
+    builder.enable_all();
     builder.build().context("starting the runtime")
 }

@@ -1,7 +1,9 @@
 //! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
 
-use super::instrument_tasks::InstrumentTasks;
+use super::instrument_log::InstrumentLog;
+use super::instrument_tasks::{InstrumentTask, InstrumentTasks};
 use super::lot::{LotContext, Purpose};
+use super::real_time::Keeper;
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
 use super::{simulated, source::Simulated, truth_file::TruthFile};
@@ -16,9 +18,8 @@ use machine::handling::serial::SourceName;
 use machine::rig::instruments::InstrumentWiring;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
-use rigsim::{SharedRig, pty, wire};
+use rigsim::{SharedRig, pty, scpi::serve::Served, wire};
 use scpi::LinkAddress;
-use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 /// How long a measuring line waits for a late reply, ms. The line requests the name of a silent module three times;
@@ -44,35 +45,45 @@ pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.
 pub struct Lines {
-    /// Runs the tasks of the lines.
-    handle: Handle,
+    /// Runs the tasks of lines and instruments.
+    keeper: Keeper,
     /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
     /// Queue ends of the instruments that the cycle holds, in the order of the wiring.
     pub instruments: Vec<InstrumentEnds>,
+    instrument_tasks: Vec<InstrumentTask>,
     /// Readings of the code reader; `None` in a lot without one.
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Trace and health of each line, with its name.
     pub logs: Vec<(String, LineLog)>,
+    /// Traffic and health of each instrument.
+    pub(super) instrument_logs: Vec<InstrumentLog>,
     /// The simulated rig behind the lines; `None` on a real one.
     #[cfg(feature = "sim")]
     rig: Option<SharedRig>,
     #[cfg(feature = "sim")]
     _ptys: Option<pty::Ptys>,
+    /// Ports of simulated instruments, which close when the run ends.
+    #[cfg(feature = "sim")]
+    _served: Option<Served>,
 }
 
 impl Lines {
-    fn none(handle: &Handle) -> Self {
+    fn none(keeper: &Keeper) -> Self {
         Self {
-            handle: handle.clone(),
+            keeper: keeper.clone(),
             ends: Vec::new(),
             instruments: Vec::new(),
+            instrument_tasks: Vec::new(),
             readings: None,
             logs: Vec::new(),
+            instrument_logs: Vec::new(),
             #[cfg(feature = "sim")]
             rig: None,
             #[cfg(feature = "sim")]
             _ptys: None,
+            #[cfg(feature = "sim")]
+            _served: None,
         }
     }
 
@@ -83,6 +94,19 @@ impl Lines {
             return Box::new(move || Some(rig.eeprom_writes()));
         }
         Box::new(|| None)
+    }
+
+    fn keep(&mut self, opened: Vec<(InstrumentEnds, InstrumentTask)>) {
+        (self.instruments, self.instrument_tasks) = opened.into_iter().unzip();
+        let tasks = self.instrument_tasks.iter();
+        self.instrument_logs = tasks.map(|it| it.log.clone()).collect();
+    }
+
+    /// Waits until every task has ended, and so has made its instrument safe or given up.
+    pub async fn end_instruments(&mut self) {
+        for task in std::mem::take(&mut self.instrument_tasks) {
+            task.end().await;
+        }
     }
 
     /// Finishes a run on a simulated rig: writes its truth file, logs collisions, late replies and overdriven coils.
@@ -128,7 +152,7 @@ impl Lines {
     fn open_reader(&mut self, settings: &SerialReaderSettings, open: OpenPort, pace: &Pace) {
         let (given, readings) = mpsc::channel(READINGS);
         let reading = bus::run_reader(open, settings.no_code.clone(), *pace, given);
-        self.handle.spawn(reading);
+        self.keeper.handle.spawn(reading);
         self.readings = Some(readings);
     }
 
@@ -140,7 +164,7 @@ impl Lines {
         let (requests, requested) = mpsc::channel(1);
         let (answer, answers) = mpsc::channel(1);
         let serving = bus::run_reopening(open, settings, *pace, requested, answer);
-        self.handle.spawn(serving);
+        bus::spawn(&self.keeper.handle, serving);
         self.ends.push(LineEnds {
             line,
             requests,
@@ -168,12 +192,12 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
     settings
 }
 
-/// Opens every line of the plant; `handle` runs their tasks.
+/// Opens every line of the plant; `keeper` runs their tasks.
 ///
 /// # Errors
 /// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built.
-pub async fn open(context: &LotContext<'_>, pace: &Pace, handle: &Handle) -> anyhow::Result<Lines> {
-    let lines = Lines::none(handle);
+pub async fn open(context: &LotContext<'_>, pace: &Pace, keeper: &Keeper) -> anyhow::Result<Lines> {
+    let lines = Lines::none(keeper);
     match context.source {
         RigSource::Serial(given) => serial(lines, context, given, pace),
         #[cfg(feature = "sim")]
@@ -207,23 +231,24 @@ fn serial(
         let port = port(READER, &reader.port);
         lines.open_reader(reader, bus::serial_port(port, reader.baud), pace);
     }
-    let tasks = instrument_tasks(&lines.handle, plant, pace, started_us());
-    lines.instruments = tasks.open_all(|name| {
+    let tasks = instrument_tasks(&lines.keeper, plant, pace, started_us());
+    let opened = tasks.open_all(|name| {
         let other = given.iter().find(|it| it.line == name)?;
         other.port.parse().ok()
     });
+    lines.keep(opened);
     Ok(lines)
 }
 
 fn instrument_tasks<'a>(
-    handle: &'a Handle,
+    keeper: &'a Keeper,
     plant: &'a Plant,
     pace: &'a Pace,
     seed: u64,
 ) -> InstrumentTasks<'a> {
     let wiring = &plant.wiring;
     InstrumentTasks {
-        handle,
+        keeper,
         wiring,
         pace,
         seed,
@@ -287,15 +312,18 @@ async fn simulated_lines(
             }
         }
         lines._ptys = Some(ptys);
-        let links = rig.serve_instruments().await?;
-        let tasks = instrument_tasks(&lines.handle, plant, pace, started_us());
-        lines.instruments = tasks.open_all(|name| {
-            let (_, link) = links.iter().find(|it| it.0 == name)?;
+        let served = rig.serve_instruments().await?;
+        let tasks = instrument_tasks(&lines.keeper, plant, pace, started_us());
+        let opened = tasks.open_all(|name| {
+            let (_, link) = served.links.iter().find(|it| it.0 == name)?;
             link.parse().ok()
         });
+        lines.keep(opened);
+        lines._served = Some(served);
     } else {
-        let tasks = instrument_tasks(&lines.handle, plant, pace, source.seed);
-        lines.instruments = plugged(&tasks, &rig)?;
+        let tasks = instrument_tasks(&lines.keeper, plant, pace, source.seed);
+        let opened = plugged(&tasks, &rig)?;
+        lines.keep(opened);
         for (name, plug) in wire::plugs(&rig) {
             let mut open = bus::from_streams(move || plug.open());
             match (name == READER, reader) {
@@ -312,7 +340,10 @@ async fn simulated_lines(
 
 /// Starts the task of each instrument of a simulated rig in virtual time.
 #[cfg(feature = "sim")]
-fn plugged(tasks: &InstrumentTasks, rig: &SharedRig) -> anyhow::Result<Vec<InstrumentEnds>> {
+fn plugged(
+    tasks: &InstrumentTasks,
+    rig: &SharedRig,
+) -> anyhow::Result<Vec<(InstrumentEnds, InstrumentTask)>> {
     let plugs = rig.instrument_plugs();
     let open = |instrument| {
         let InstrumentWiring { name, link, .. } = tasks.wiring.instrument(instrument);

@@ -12,7 +12,7 @@ use rustix::mm::{MlockAllFlags, mlockall};
 use rustix::process::{Resource, getrlimit};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
+use std::thread::JoinHandle as Thread;
 use std::time::Duration;
 use thiserror::Error;
 use thread_priority::{
@@ -20,7 +20,8 @@ use thread_priority::{
     set_thread_priority_and_policy, thread_native_id,
 };
 use tokio::runtime::Handle;
-use tokio::sync::oneshot;
+use tokio::sync::{mpsc, oneshot};
+use tokio::task::{JoinError, JoinHandle};
 use units::{RigTime, Span};
 
 /// Priority under SCHED_FIFO: above every ordinary process, below the kernel threads that handle interrupts (50).
@@ -28,13 +29,64 @@ pub const PRIORITY: u8 = 49;
 /// Interval of the waits of a latency test, as cyclictest has it.
 pub const INTERVAL: Span = Span::ms(1);
 
-/// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks.
-pub struct RigThread {
-    /// Spawns tasks onto the thread.
+/// Longest time for which the thread waits at its end for tasks that must end by themselves.
+const ENDS_WITHIN: Duration = Duration::from_secs(12);
+
+/// Spawns tasks onto the rig's thread.
+#[derive(Debug, Clone)]
+pub struct Keeper {
+    /// Spawns tasks that are cut off when the thread ends.
     pub handle: Handle,
+    /// Each task that must end by itself holds a clone.
+    awaited: mpsc::Sender<()>,
+}
+
+impl Keeper {
+    /// Spawns a task for whose end the thread waits, at most [`ENDS_WITHIN`].
+    pub fn spawn<T: Send + 'static>(
+        &self,
+        task: impl Future<Output = T> + Send + 'static,
+    ) -> JoinHandle<T> {
+        let awaited = self.awaited.clone();
+        self.handle.spawn(async move {
+            let _awaited = awaited;
+            task.await
+        })
+    }
+}
+
+/// A task that is cut off when this handle is dropped.
+#[derive(Debug)]
+pub struct Owned<T>(JoinHandle<T>);
+
+impl<T> Owned<T> {
+    /// Takes over a task.
+    pub fn new(task: JoinHandle<T>) -> Self {
+        Self(task)
+    }
+
+    /// Waits for the end of the task.
+    ///
+    /// # Errors
+    /// Fails when the task panicked.
+    pub async fn end(mut self) -> Result<T, JoinError> {
+        (&mut self.0).await
+    }
+}
+
+impl<T> Drop for Owned<T> {
+    fn drop(&mut self) {
+        self.0.abort();
+    }
+}
+
+/// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks; at real pace it first waits for
+/// those of [`Keeper::spawn`].
+pub struct RigThread {
+    keeper: Keeper,
     /// Rights that the system grants the thread; the lateness in it is empty.
     pub rights: HostView,
-    own: Option<(oneshot::Sender<()>, JoinHandle<()>)>,
+    own: Option<(oneshot::Sender<()>, Thread<()>)>,
 }
 
 impl RigThread {
@@ -45,7 +97,10 @@ impl RigThread {
     pub fn start(pace: Pace) -> anyhow::Result<Self> {
         if pace.is_virtual() {
             return Ok(Self {
-                handle: Handle::current(),
+                keeper: Keeper {
+                    handle: Handle::current(),
+                    awaited: mpsc::channel(1).0,
+                },
                 rights: HostView::default(),
                 own: None,
             });
@@ -54,28 +109,44 @@ impl RigThread {
             .enable_all()
             .build()
             .context("starting the runtime of the rig")?;
+        let (awaited, mut others) = mpsc::channel(1);
         let handle = runtime.handle().clone();
+        let keeper = Keeper { handle, awaited };
         let (granted, rights) = std::sync::mpsc::sync_channel(1);
         let (stop, stopped) = oneshot::channel();
         let serve = move || {
             // `start` waits for the rights below, so the channel is open.
             let _ = granted.send(raise());
             let _ = runtime.block_on(stopped);
+            // Ends when the last task has dropped its sender.
+            let ended = async { tokio::time::timeout(ENDS_WITHIN, others.recv()).await };
+            if runtime.block_on(ended).is_err() {
+                tracing::error!("a task of the rig did not end in time");
+            }
         };
         let thread = std::thread::Builder::new().name("rig".into());
         let thread = thread.spawn(serve).context("starting the rig's thread")?;
         let rights = rights.recv().context("starting the rig's thread")?;
         log(&rights);
         Ok(Self {
-            handle,
+            keeper,
             rights,
             own: Some((stop, thread)),
         })
     }
 }
 
+impl RigThread {
+    /// Returns the spawner of tasks on this thread.
+    pub fn keeper(&self) -> &Keeper {
+        &self.keeper
+    }
+}
+
 impl Drop for RigThread {
     fn drop(&mut self) {
+        // Other clones are those of tasks.
+        self.keeper.awaited = mpsc::channel(1).0;
         if let Some((stop, thread)) = self.own.take() {
             let _ = stop.send(());
             if thread.join().is_err() {
@@ -153,7 +224,7 @@ fn log(rights: &HostView) {
 /// program.
 pub struct BareLoop {
     stop: Arc<AtomicBool>,
-    thread: JoinHandle<Lateness>,
+    thread: Thread<Lateness>,
 }
 
 impl BareLoop {
@@ -205,7 +276,7 @@ mod tests {
     async fn tasks_run_on_a_thread_of_their_own() {
         let thread = RigThread::start(Pace::real()).unwrap();
         let name = async { std::thread::current().name().map(str::to_owned) };
-        let name = thread.handle.spawn(name).await.unwrap();
+        let name = thread.keeper().handle.spawn(name).await.unwrap();
         assert_eq!(name.as_deref(), Some("rig"));
         let rights = &thread.rights;
         let granted = u32::from(rights.fifo_priority.is_some()) + u32::from(rights.memory_locked);
@@ -218,7 +289,7 @@ mod tests {
         let thread = RigThread::start(Pace::virtual_time()).unwrap();
         let here = std::thread::current().id();
         let there = async { std::thread::current().id() };
-        assert_eq!(thread.handle.spawn(there).await.unwrap(), here);
+        assert_eq!(thread.keeper().handle.spawn(there).await.unwrap(), here);
         assert_eq!(thread.rights, HostView::default());
     }
 }

@@ -83,7 +83,8 @@ pub fn build_empty(
     })?)
 }
 
-/// Empties the magazine and loads it for the lot, as a person would.
+/// Empties the magazine and loads it for the lot, as a person would. Without a truth file the rig forgets the parts of
+/// earlier lots.
 ///
 /// # Errors
 /// Fails as [`build`] does.
@@ -93,5 +94,8 @@ pub fn load(
     source: &Simulated,
     order: &LotOrder,
 ) -> anyhow::Result<()> {
+    if source.truth.is_none() {
+        rig.forget_finished();
+    }
     Ok(rig.refill(&loaded(plant, source, order))?)
 }

@@ -17,14 +17,22 @@ pub(crate) fn trace_path(stem: &Path, at_ms: i64, line: &str) -> PathBuf {
 }
 
 /// Deletes the traces of all but the newest alarms, and of those that are too old at `now_ms`. Logs a failed deletion.
+///
+/// A trace from after `now_ms` was written before the clock was set back: it counts as older than all others, so that
+/// it never displaces a new one.
 pub(crate) fn tidy(stem: &Path, keep: &HistorySettings, now_ms: i64) {
     let files = trace_files(stem);
-    let alarms: BTreeSet<i64> = files.iter().map(|(at_ms, _)| *at_ms).collect();
+    let alarms: BTreeSet<(bool, i64)> = files
+        .iter()
+        .map(|(at_ms, _)| (*at_ms <= now_ms, *at_ms))
+        .collect();
     let since = now_ms - DAY_MS * i64::from(keep.trace_days);
     let newest = alarms.into_iter().rev().take(keep.traces as usize);
-    let oldest = newest.take_while(|it| *it >= since).last();
-    let is_old = |at_ms: i64| oldest.is_none_or(|oldest| at_ms < oldest);
-    for (_, path) in files.iter().filter(|(at_ms, _)| is_old(*at_ms)) {
+    let kept: BTreeSet<i64> = newest
+        .map(|(_, at_ms)| at_ms)
+        .filter(|it| *it >= since)
+        .collect();
+    for (_, path) in files.iter().filter(|(at_ms, _)| !kept.contains(at_ms)) {
         if let Err(error) = fs::remove_file(path) {
             tracing::warn!("old trace {}: {error}", path.display());
         }
@@ -82,5 +90,27 @@ mod tests {
         assert_eq!(left(1, 3), [4, 4]);
         assert!(left(9, 0).is_empty());
         assert!(foreign.iter().all(|it| folder.path().join(it).exists()));
+    }
+    #[test]
+    fn a_clock_set_back_deletes_no_new_trace() {
+        let folder = tempfile::tempdir().unwrap();
+        let stem = folder.path().join("rig");
+        for day in [2, 8, 9] {
+            fs::write(trace_path(&stem, day * DAY_MS, "motion"), "").unwrap();
+        }
+        let left = |traces, day| {
+            let keep = HistorySettings {
+                traces,
+                trace_days: 30,
+                ..HistorySettings::default()
+            };
+            tidy(&stem, &keep, day * DAY_MS);
+            let mut days: Vec<i64> = trace_files(&stem).iter().map(|it| it.0 / DAY_MS).collect();
+            days.sort_unstable();
+            days
+        };
+        assert_eq!(left(3, 2), [2, 8, 9]);
+        assert_eq!(left(2, 2), [2, 9]);
+        assert_eq!(left(1, 2), [2]);
     }
 }

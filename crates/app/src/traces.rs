@@ -1,11 +1,14 @@
-//! Writes the last traffic of every line to files when an alarm occurs; reports the health of the modules.
+//! Writes the last traffic of every line and instrument to files when an alarm occurs; reports the health of modules and
+//! instruments.
 
+use crate::instrument_log::InstrumentLog;
+use crate::links::Lines;
 use crate::signals::Signals;
 use crate::trace_files::{tidy, trace_path};
 use bus::{LineLog, Meaning, Recorded, arrow, escaped};
 use config::{HistorySettings, Plant};
 use machine::rig::wiring::{LineId, Wiring};
-use machine::view::{LineTraffic, LineView, Message, ModuleView};
+use machine::view::{InstrumentView, LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texts::Lang;
@@ -23,21 +26,22 @@ struct LineSource {
     log: LineLog,
 }
 
-/// Logs of a run's lines, and the path of their trace files.
+/// Logs of a run's lines and instruments, and the path of their trace files.
 #[derive(Debug, Clone)]
 pub struct Traces {
     /// Path of the history file without its extension.
     stem: PathBuf,
     keep: HistorySettings,
     sources: Vec<LineSource>,
+    instruments: Vec<InstrumentLog>,
     dumped: usize,
 }
 
 impl Traces {
-    /// Collects the logs of the lines, whose traces go into files beside `db`. Deletes old trace files.
-    pub fn new(db: &Path, plant: &Plant, logs: &[(String, LineLog)]) -> Self {
+    /// Collects the logs of lines and instruments, whose traces go into files beside `db`. Deletes old trace files.
+    pub fn new(db: &Path, plant: &Plant, lines: &Lines) -> Self {
         let wiring = Arc::new(plant.wiring.clone());
-        let sources = logs.iter().filter_map(|(name, log)| {
+        let sources = lines.logs.iter().filter_map(|(name, log)| {
             let id = wiring.line_named(name)?;
             let line = wiring.line(id);
             Some(LineSource {
@@ -56,23 +60,30 @@ impl Traces {
             stem,
             keep: plant.history.clone(),
             sources: sources.collect(),
+            instruments: lines.instrument_logs.clone(),
             dumped: 0,
         }
     }
 
-    /// Writes the trace of every line and returns the paths; writes nothing after `MAX_TRACES` calls. Then deletes
-    /// old traces, and these too when `[history]` keeps none. Logs a failed write; the run continues.
+    /// Writes the trace of every line and instrument, and returns the paths of the files that remain. Then deletes old
+    /// traces; with `[history]` keeping none, these too. After `MAX_TRACES` calls writes nothing more. Logs a failed
+    /// write; the run continues.
     pub fn dump(&mut self, at_us: i64) -> Vec<PathBuf> {
         if self.dumped >= MAX_TRACES {
             return Vec::new();
         }
         self.dumped += 1;
-        let mut written = Vec::new();
-        for source in &self.sources {
-            let path = trace_path(&self.stem, at_us / 1000, &source.name);
+        let lines = self.sources.iter().map(|source| {
             let trace = source.log.trace();
             let recorded = Recorded::of(&trace, &source.name, source.baud, source.checksum);
-            match std::fs::write(&path, recorded.text()) {
+            (source.name.as_str(), recorded.text())
+        });
+        let instruments = self.instruments.iter();
+        let instruments = instruments.map(|it| (it.name.as_str(), it.text()));
+        let mut written = Vec::new();
+        for (name, text) in lines.chain(instruments) {
+            let path = trace_path(&self.stem, at_us / 1000, name);
+            match std::fs::write(&path, text) {
                 Ok(()) => written.push(path),
                 Err(error) => tracing::error!("trace {}: {error}", path.display()),
             }
@@ -82,10 +93,17 @@ impl Traces {
         written
     }
 
-    /// Returns the last messages of every line, at most `last` each, with their meaning.
+    /// Returns the last messages of every line, with their meaning, then those of every instrument; at most `last` each.
     pub fn messages(&self, last: usize) -> Vec<LineTraffic> {
         let sources = self.sources.iter();
-        sources.map(|source| messages(source, last)).collect()
+        let lines = sources.map(|source| messages(source, last));
+        let instruments = self.instruments.iter().map(|it| it.messages(last));
+        lines.chain(instruments).collect()
+    }
+
+    /// Returns the health of the instruments.
+    pub fn instruments(&self) -> Vec<InstrumentView> {
+        self.instruments.iter().map(InstrumentLog::health).collect()
     }
 
     /// Returns the health of the lines and their modules.

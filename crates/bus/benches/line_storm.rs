@@ -96,10 +96,10 @@ fn print_counts(weather: &Weather) {
     );
 }
 
-/// Prints the expected number of wrong readings among n transactions that no host can detect. Shares, 0 to 1: c of the
-/// transactions with two simultaneous replies; p of such pairs that pass for another value; q of such pairs, at a read
-/// of all inputs, that pass within the noise of the reads before and after; d of the replies with damage that a host
-/// detects.
+/// Prints how many wrong readings, which no host can detect, to expect among n transactions. It uses four shares
+/// between 0 and 1. c: transactions with two simultaneous replies. p: such pairs that pass for another value. q: such
+/// pairs, at a read of all inputs, that lie within the noise of the reads before and after. d: replies whose damage a
+/// host detects.
 fn print_expected(n: f64, faults: &[&str]) {
     let channel = Channel::new(0).expect("0 is a channel");
     let (p, _) = passing(

@@ -65,6 +65,7 @@
 //! | `instrument/` | links to SCPI instruments over TCP, serial ports and GPIB adapters |
 //! | `meaning.rs`, `words.rs` | texts of requests and replies, English and Chinese |
 //! | `port.rs`, `raw.rs` | serial ports; single frames for tools |
+//! | `task.rs` | hands tasks to the runtime |
 //! | `reader.rs` | the line of a code reader, which speaks by itself |
 
 mod answer;
@@ -82,6 +83,7 @@ mod raw;
 mod reader;
 mod recorded;
 mod settings;
+mod task;
 mod timer;
 mod trace;
 mod transaction;
@@ -105,6 +107,7 @@ pub use raw::{RawReply, send_raw};
 pub use reader::{Reading, run_reader};
 pub use recorded::{Recorded, RecordedError, arrow, escaped, unescaped};
 pub use settings::{LineSettings, longest_transaction};
+pub use task::{Task, block_on, spawn};
 pub use timer::Timer;
 pub use trace::{Direction, Entry, Trace};
 pub use wire::Wire;

@@ -7,7 +7,7 @@ use super::outstanding::OutstandingReplies;
 use super::probation::Probation;
 use super::transaction::{Times, Transaction};
 use super::{
-    Answer, Failure, LineError, LineSettings, OpenPort, Pace, Port, PortError, Request, Timer,
+    Answer, Failure, LineError, LineSettings, OpenPort, Pace, Port, PortError, Request, Task, Timer,
 };
 use dcon::{Command, Common, FRAME_LIMIT, Reply};
 use tokio::sync::mpsc;
@@ -28,43 +28,15 @@ pub async fn run(
 
 /// Serves requests as [`run`] does, over ports that it opens itself: the first one at the first request, and after a
 /// loss another one, at most once per back-off time.
-pub async fn run_reopening(
+pub fn run_reopening(
     open: OpenPort,
     settings: LineSettings,
     pace: Pace,
-    mut requests: mpsc::Receiver<Request>,
+    requests: mpsc::Receiver<Request>,
     answers: mpsc::Sender<Answer>,
-) {
-    let backoff = Span::ms(settings.reopen_first_ms);
-    let mut line = Line {
-        open,
-        port: None,
-        settings,
-        pace,
-        timer: Timer::new(pace),
-        request: Vec::with_capacity(24),
-        frame: Frame::new(),
-        silent: true,
-        outstanding: OutstandingReplies::default(),
-        probation: Probation::default(),
-        reopen_at: RigTime(0),
-        backoff,
-        lost_because: PortError::Gone,
-    };
-    while let Some(request) = requests.recv().await {
-        let answer = line.serve(request).await;
-        assert_eq!(
-            answer.ticket, request.ticket,
-            "the answer has another ticket"
-        );
-        assert_eq!(
-            answer.command, request.command,
-            "the answer has another command"
-        );
-        if answers.send(answer).await.is_err() {
-            return;
-        }
-    }
+) -> Task {
+    let line = Line::new(open, settings, pace);
+    Box::pin(line.run(requests, answers))
 }
 
 struct Line {
@@ -92,6 +64,43 @@ struct Try {
 }
 
 impl Line {
+    /// Creates a line without an open port.
+    fn new(open: OpenPort, settings: LineSettings, pace: Pace) -> Self {
+        let backoff = Span::ms(settings.reopen_first_ms);
+        Self {
+            open,
+            port: None,
+            settings,
+            pace,
+            timer: Timer::new(pace),
+            request: Vec::with_capacity(24),
+            frame: Frame::new(),
+            silent: true,
+            outstanding: OutstandingReplies::default(),
+            probation: Probation::default(),
+            reopen_at: RigTime(0),
+            backoff,
+            lost_because: PortError::Gone,
+        }
+    }
+
+    async fn run(mut self, mut requests: mpsc::Receiver<Request>, answers: mpsc::Sender<Answer>) {
+        while let Some(request) = requests.recv().await {
+            let answer = self.serve(request).await;
+            assert_eq!(
+                answer.ticket, request.ticket,
+                "the answer has another ticket"
+            );
+            assert_eq!(
+                answer.command, request.command,
+                "the answer has another command"
+            );
+            if answers.send(answer).await.is_err() {
+                return;
+            }
+        }
+    }
+
     /// Serves a request. Writes a setting only if the module does not already have this value, because EEPROMs wear, or
     /// if the module refuses to report it.
     async fn serve(&mut self, request: Request) -> Answer {

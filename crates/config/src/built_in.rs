@@ -9,6 +9,7 @@ macro_rules! files {
 pub(super) const BUILT_IN: &[(&str, &str)] = files![
     "README.md",
     "card.toml",
+    "fleet.toml",
     "golden.toml",
     "instruments/ac-source-61500.toml",
     "instruments/digitizer-keysight.toml",
@@ -44,13 +45,26 @@ macro_rules! rig {
 }
 
 /// The rigs of `config/rigs`, each a configuration of its own; a test compares the names with the folders.
-pub(super) const RIGS: &[Rig] = &[rig!["ssr":
-    "card.toml",
-    "recipes/ssr-dc-60v-3a.toml",
-    "rig.toml",
-    "scene.toml",
-    "sim.toml",
-]];
+pub(super) const RIGS: &[Rig] = &[
+    rig!["ssr":
+        "card.toml",
+        "recipes/ssr-ac-240v-5a-random.toml",
+        "recipes/ssr-ac-240v-5a-zc.toml",
+        "recipes/ssr-dc-60v-3a.toml",
+        "rig.toml",
+        "scene.toml",
+        "sim.toml",
+    ],
+    rig!["thermostat":
+        "card.toml",
+        "rack.toml",
+        "recipes/thermostat-ksd301.toml",
+        "recipes/thermostat-ksd9700.toml",
+        "recipes/thermostat-referee.toml",
+        "rig.toml",
+        "sim.toml",
+    ],
+];
 
 /// Name of the rig of `config/` itself.
 pub(super) const FIRST_RIG: &str = "jzc-22f";

@@ -102,8 +102,9 @@ impl File {
         } else {
             String::new()
         };
-        for name in &names[header..] {
-            if name.parse::<usize>().is_ok() {
+        for (index, name) in names.iter().enumerate().skip(header) {
+            let parent = self.root.find(&names[..index].join(".")).0;
+            if name.parse::<usize>().is_ok() && !parent.is_table() {
                 label.push_str(&format!("[{name}]"));
             } else {
                 if !label.is_empty() {

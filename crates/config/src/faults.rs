@@ -3,6 +3,7 @@
 use super::card::load_card;
 use super::check::Faults;
 use super::error::ConfigError;
+use super::fleet::load_fleet;
 use super::folder::Folder;
 use super::instruments::{instrument_names, parse_instrument, read_instrument};
 use super::keys;
@@ -43,18 +44,23 @@ impl fmt::Display for ConfigFaults {
 /// Fails with every fault found.
 pub fn check_all(folder: &Folder) -> Result<Plant, ConfigFaults> {
     let mut found = Found::default();
+    found.rig(folder);
     for (name, keys) in [
-        ("rig.toml", keys::rig::FILE),
         ("golden.toml", keys::golden::FILE),
+        ("rack.toml", keys::golden::CERTIFICATE),
         ("lot.toml", keys::lot::FILE),
         ("card.toml", keys::card::FILE),
+        ("fleet.toml", keys::fleet::FILE),
     ] {
         found.keys(folder, name, keys);
     }
     let plant = found.note(Plant::load(folder));
-    found.note(load_scene(folder));
+    if plant.as_ref().is_none_or(|plant| plant.scene.is_some()) {
+        found.note(load_scene(folder));
+    }
     found.note(load_lot(folder));
     found.note(load_card(folder));
+    found.note(load_fleet(folder));
     for name in instrument_names(folder) {
         found.instrument(folder, &name);
     }
@@ -91,6 +97,14 @@ impl Found {
             file.faults(keys)
                 .into_iter()
                 .for_each(|fault| self.add(fault));
+        }
+    }
+
+    fn rig(&mut self, folder: &Folder) {
+        // Loading reports a file that is missing or not TOML.
+        if let Ok(file) = folder.file("rig.toml", "the wiring of the rig") {
+            let faults = file.faults(file.rig_keys()).into_iter();
+            faults.for_each(|fault| self.add(fault));
         }
     }
 

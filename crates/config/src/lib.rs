@@ -6,6 +6,7 @@
 //! | `scene.toml` | the bodies around the nest | `GuardSettings` |
 //! | `golden.toml` (named in `rig.toml`) | reference parts | `ReferenceSet` |
 //! | `card.toml` | what the plant states for the process card | `CardSettings` |
+//! | `fleet.toml`, which may be missing | databases that collect the histories of many rigs | [`FleetSettings`] |
 //! | `lot.toml`, which may be missing | gates of a lot: reference checks, reject-rate limit, first articles, wear limits | `LotSettings` |
 //! | `instruments/NAME.toml`, which may be missing | one model of SCPI instrument | `Profile` |
 //! | `recipes/NAME.toml` | one type of part with its limits | `Recipe` |
@@ -38,6 +39,7 @@ pub mod check;
 mod edit;
 pub mod error;
 mod faults;
+mod fleet;
 mod folder;
 mod init;
 mod instruments;
@@ -50,6 +52,7 @@ pub mod plant;
 pub(crate) mod readme;
 pub mod recipes;
 mod revision;
+mod scenes;
 pub mod schema;
 mod sheet;
 pub mod strict;
@@ -61,6 +64,7 @@ mod tests;
 pub use card::load_card;
 pub use error::ConfigError;
 pub use faults::{ConfigFaults, check_all};
+pub use fleet::{FleetSettings, FleetTarget, SampleChoice, TlsChoice, load_fleet};
 pub use folder::{Folder, Memory};
 pub use init::{InitError, init};
 pub use instruments::{folder_of_profiles, instrument_names, load_instrument};
@@ -69,3 +73,4 @@ pub use overview::overview;
 pub use plant::{HistorySettings, Plant, SerialReaderSettings};
 pub use recipes::{Approval, approval, load_recipe, recipe_names};
 pub use revision::{Change, Revision, revise, revision};
+pub use scenes::{SCENE, scene_names, scene_text};

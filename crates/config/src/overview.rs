@@ -27,11 +27,19 @@ pub fn overview(folder: &Folder) -> Result<String, ConfigFaults> {
     ));
     lines
         .push("  every point has its own terminal; every address is unique on its line".to_owned());
-    lines.push(format!(
-        "{}: {} bodies, every actuator has its stroke",
-        folder.path("scene.toml").display(),
-        plant.scene.elements.len()
-    ));
+    if let Some(scene) = &plant.scene {
+        lines.push(format!(
+            "{}: {} bodies, every actuator has its stroke",
+            folder.path("scene.toml").display(),
+            scene.elements.len()
+        ));
+    }
+    if let Some(rack) = wiring.rack() {
+        let (sockets, lists) = (rack.sockets().len(), rack.lists().len());
+        lines.push(format!(
+            "  rack: {sockets} sockets, {lists} unloading lists"
+        ));
+    }
     if let Some(file) = &plant.calibration.reference_file {
         let count = plant.reference_parts.parts.len();
         lines.push(format!(

@@ -12,9 +12,11 @@ use machine::dut::accuracy::AccuracySettings;
 use machine::dut::device::Rig;
 use machine::dut::em_relay::settings::{CalibrationSettings, ReferenceSet, ReferenceSettings};
 use machine::dut::prompt::Prompt;
+use machine::dut::thermostat::certificate::Certificate;
 use machine::dut::{self, Recipe};
 use machine::form::Key;
 use machine::guard::{Actuator, Guard, GuardSettings};
+use machine::rig::axis::AxisTable;
 use machine::rig::fault::Fault;
 use machine::rig::settings::RigSettings;
 use machine::rig::wiring::Wiring;
@@ -31,8 +33,8 @@ pub struct Plant {
     pub folder: Folder,
     /// Serial lines, modules, points and mechanism of the rig.
     pub wiring: Arc<Wiring>,
-    /// Bodies around the nest.
-    pub scene: GuardSettings,
+    /// Bodies around the nest; `None` on a rig with a rack, where nothing moves.
+    pub scene: Option<GuardSettings>,
     /// References on the interface board, if it has any.
     pub reference: Option<ReferenceSettings>,
     /// Accuracies that hold before the rig is calibrated.
@@ -41,6 +43,8 @@ pub struct Plant {
     pub calibration: CalibrationSettings,
     /// Reference parts; none when `rig.toml` names no file of them.
     pub reference_parts: ReferenceSet,
+    /// Certificate of thermometer chain and sockets; `None` when `rig.toml` names none.
+    pub certificate: Option<Certificate>,
     /// Gates of a lot: reference checks, reject-rate limit, first articles, wear limits.
     pub lot: LotSettings,
     /// Longest outage of the history, and how long the traces of alarms are kept.
@@ -107,8 +111,8 @@ impl Plant {
     /// Fails on the first fault; the error names file, line, key, what was found and what was expected.
     pub fn load(folder: &Folder) -> Result<Self, ConfigError> {
         let rig = folder.file("rig.toml", "the wiring of the rig")?;
-        let settings: RigSettings = rig.settings(keys::rig::FILE)?;
-        let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
+        let settings: RigSettings = rig.settings(rig.rig_keys())?;
+        let gauge: GaugeSections = rig.settings(rig.rig_keys())?;
         let profiles = load_profiles(folder, &rig, &settings)?;
         let wiring = Wiring::resolve_with(&settings, dut::FIXTURES, &profiles);
         let wiring = wiring.map_err(|fault| rig.locate(&fault))?;
@@ -116,8 +120,18 @@ impl Plant {
             Some(name) => load_reference_parts(folder, name)?,
             None => ReferenceSet::default(),
         };
-        let scene = load_scene(folder)?;
-        check_axis(&wiring, &scene, &rig)?;
+        let certificate = match &gauge.calibration.certificate_file {
+            Some(name) => Some(load_certificate(folder, name, &wiring)?),
+            None => None,
+        };
+        let scene = match wiring.feeder() {
+            Some(feeder) => {
+                let scene = load_scene(folder)?;
+                check_axis(&feeder.axis, &scene, &rig)?;
+                Some(scene)
+            }
+            None => None,
+        };
         let lot = load_lot(folder)?;
         check_reader(folder, &lot, gauge.serial_reader.is_some())?;
         Ok(Self {
@@ -128,6 +142,7 @@ impl Plant {
             accuracy: gauge.accuracy,
             calibration: gauge.calibration,
             reference_parts,
+            certificate,
             lot,
             history: gauge.history,
             serial_reader: gauge.serial_reader,
@@ -141,6 +156,7 @@ impl Plant {
             reference: self.reference.as_ref(),
             accuracy: &self.accuracy,
             reference_parts: &self.reference_parts,
+            certificate: self.certificate.as_ref(),
         }
     }
 
@@ -194,6 +210,14 @@ impl File {
         }
     }
 
+    /// Returns the keys that this `rig.toml` may have: those of a rig with a feeder, or of one with a rack.
+    pub(super) fn rig_keys(&self) -> &'static [Key] {
+        match self.root.get("rack") {
+            Some(_) => keys::rig::WITH_RACK,
+            None => keys::rig::FILE,
+        }
+    }
+
     /// Checks the file against its keys and converts it to settings.
     pub fn settings<T: DeserializeOwned>(&self, keys: &[Key]) -> Result<T, ConfigError> {
         self.check(keys)?;
@@ -222,6 +246,20 @@ fn load_reference_parts(folder: &Folder, name: &str) -> Result<ReferenceSet, Con
     Ok(set)
 }
 
+/// Loads the certificate of the rack; fails when it has other sockets than the rack.
+fn load_certificate(
+    folder: &Folder,
+    name: &str,
+    wiring: &Wiring,
+) -> Result<Certificate, ConfigError> {
+    let file = folder.file(name, "the certificate of thermometer and sockets")?;
+    let certificate: Certificate = file.settings(keys::golden::CERTIFICATE)?;
+    let sockets = wiring.rack().map_or(0, |it| it.sockets().len());
+    let checked = certificate.check(sockets);
+    checked.map_err(|fault| file.locate(&fault))?;
+    Ok(certificate)
+}
+
 /// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an
 /// empty rig.
 pub(super) fn load_scene(folder: &Folder) -> Result<GuardSettings, ConfigError> {
@@ -233,7 +271,7 @@ pub(super) fn load_scene(folder: &Folder) -> Result<GuardSettings, ConfigError> 
 }
 
 /// Checks that the scene allows the sort axis to reach each of its places.
-fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), ConfigError> {
+fn check_axis(axis: &AxisTable, scene: &GuardSettings, rig: &File) -> Result<(), ConfigError> {
     let Some(slide) = scene
         .actuator
         .iter()
@@ -247,8 +285,8 @@ fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), 
         .iter()
         .copied()
         .fold(slide.stroke_mm.unwrap_or(0.0), f64::max);
-    for station in wiring.axis.stations() {
-        let x_mm = wiring.axis.point(station).x_mm;
+    for station in axis.stations() {
+        let x_mm = axis.point(station).x_mm;
         if !(low..=high).contains(&x_mm) {
             let expected = format!("{low} to {high}, the stroke of sort_axis in scene.toml");
             return Err(rig.locate(&Fault::new(

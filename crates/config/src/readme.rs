@@ -97,8 +97,11 @@ mod tests {
         let readme = include_str!("../../../config/README.md");
         let files = [
             ("rig", keys::rig::FILE),
+            ("rig with a rack", keys::rig::WITH_RACK),
             ("golden", keys::golden::FILE),
+            ("rack", keys::golden::CERTIFICATE),
             ("card", keys::card::FILE),
+            ("fleet", keys::fleet::FILE),
             ("lot", keys::lot::FILE),
             ("instrument", keys::instrument::FILE),
         ];

@@ -74,7 +74,7 @@ pub enum Approval {
 /// Fails when `rig.toml` cannot be read or has a faulty key.
 pub fn approval(folder: &Folder) -> Result<Approval, ConfigError> {
     let rig = folder.file("rig.toml", "the wiring of the rig")?;
-    let rules: RecipeRules = rig.settings(keys::rig::FILE)?;
+    let rules: RecipeRules = rig.settings(rig.rig_keys())?;
     Ok(rules.recipes.approval)
 }
 

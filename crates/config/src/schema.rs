@@ -6,14 +6,27 @@ use machine::form::{Form, Key, Range};
 use serde_json::{Map, Value, json};
 
 /// Files that have a schema, by name without extension.
-pub const FILES: [&str; 6] = ["rig", "golden", "recipe", "card", "lot", "instrument"];
+pub const FILES: [&str; 9] = [
+    "rig",
+    "rig-with-rack",
+    "golden",
+    "rack",
+    "recipe",
+    "card",
+    "fleet",
+    "lot",
+    "instrument",
+];
 
 /// Returns the schema of a file in [`FILES`]; `None` for any other name.
 pub fn of_file(name: &str) -> Option<Value> {
     let keys = match name {
         "rig" => keys::rig::FILE,
+        "rig-with-rack" => return Some(schema("rig.toml", keys::rig::WITH_RACK)),
         "golden" => keys::golden::FILE,
+        "rack" => keys::golden::CERTIFICATE,
         "card" => keys::card::FILE,
+        "fleet" => keys::fleet::FILE,
         "lot" => keys::lot::FILE,
         "instrument" => return Some(schema("instruments/NAME.toml", keys::instrument::FILE)),
         "recipe" => {

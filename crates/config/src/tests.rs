@@ -5,7 +5,9 @@
 mod fixture;
 mod folder;
 mod instruments;
+mod interlocks;
 mod plant;
+mod rack;
 mod revision;
 mod rig_instruments;
 mod wrong_recipes;
@@ -211,7 +213,7 @@ fn a_beam_may_have_any_name() {
     let text = RIG.replace("beam_pass", "good_parts_fall_here");
     let wiring = rig(&text).unwrap();
     let beam = wiring.digital_input("good_parts_fall_here").unwrap();
-    assert_eq!(wiring.axis.beam(Bin::PASS), beam);
+    assert_eq!(wiring.axis().beam(Bin::PASS), beam);
 }
 
 #[test]
@@ -306,11 +308,13 @@ fn a_recipe_without_a_known_kind_is_refused_first() {
         ("kind = \"em_rely\"\ntitel = 1", "\"em_rely\""),
         ("kind = 1", "1"),
     ] {
-        let expected =
-            format!("kind: found {found}, expected \"em_relay\", \"resistor\" or \"ssr\"");
+        let expected = format!(
+            "kind: found {found}, expected \"em_relay\", \"resistor\", \"ssr\" or \"thermostat\""
+        );
         refused_recipe("kind = \"em_relay\"", to, "kind =", &expected);
     }
-    let expected = "kind: found nothing, expected \"em_relay\", \"resistor\" or \"ssr\"";
+    let expected =
+        "kind: found nothing, expected \"em_relay\", \"resistor\", \"ssr\" or \"thermostat\"";
     refused_recipe("kind = \"em_relay\"\n", "", "", expected);
 }
 
@@ -338,7 +342,7 @@ fn without_bin(name: &str) -> String {
 
 #[test]
 fn a_rig_may_have_fewer_bins_or_others() {
-    let rig_of = |text: &str| rig(text).unwrap().axis;
+    let rig_of = |text: &str| rig(text).unwrap().axis().clone();
     let names = |axis: &AxisTable| axis.bins().map(|bin| bin.to_string()).collect::<Vec<_>>();
     let fewer = rig_of(&without_bin("coil"));
     assert_eq!(
@@ -347,9 +351,9 @@ fn a_rig_may_have_fewer_bins_or_others() {
     );
     assert!(!fewer.has(bins::COIL) && fewer.has(Bin::RETEST));
     let other = rig(&changed(RIG, "coil    = { point", "grade_2 = { point")).unwrap();
-    assert_eq!(names(&other.axis)[1], "grade_2");
+    assert_eq!(names(other.axis())[1], "grade_2");
     let beam = other.digital_input("beam_coil").unwrap();
-    assert_eq!(other.axis.beam(Bin::named("grade_2")), beam);
+    assert_eq!(other.axis().beam(Bin::named("grade_2")), beam);
 }
 
 #[test]

@@ -3,14 +3,13 @@
 //! Every instrument has at most one program under way. A program that makes it safe ends the one under way; any other
 //! waits. Safe programs go out when the outputs of the modules are confirmed, or [`SAFE_AFTER`] later.
 
+use super::arrival;
 use bus::instrument::{ProgramAnswer, ProgramRequest, Start};
 use machine::instrument::query::Instrument;
 use machine::rig::wiring::Wiring;
 use scpi::Program;
-use std::collections::VecDeque;
-use std::future::poll_fn;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
-use std::task::Poll;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
@@ -32,15 +31,55 @@ pub struct InstrumentEnds {
     pub answers: mpsc::Receiver<ProgramAnswer>,
 }
 
-/// A query of the measuring job, ready to run.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct OpenQuery {
+/// Part of an open program: one query of the measuring job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Part {
     /// Position in the job.
     pub at: usize,
     /// Name of the program.
     pub name: &'static str,
-    /// Its commands.
+    /// Number of its values.
+    pub values: usize,
+}
+
+/// The queries of the measuring job for one instrument, ready to run: one program, so that the link proves only once
+/// that its replies are its own.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct OpenQuery {
+    /// The queries in their order, at least one.
+    pub parts: Vec<Part>,
+    /// The commands of all.
     pub program: Program,
+}
+
+impl OpenQuery {
+    /// Makes the program of one query.
+    pub fn new(at: usize, name: &'static str, program: Program) -> Self {
+        let values = program.values();
+        Self {
+            parts: vec![Part { at, name, values }],
+            program,
+        }
+    }
+
+    /// Appends a later query of the same instrument.
+    pub fn append(&mut self, mut other: Self) {
+        self.parts.append(&mut other.parts);
+        self.program.append(other.program);
+    }
+}
+
+/// Query whose values are on their way to the measuring job.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Deliverer {
+    /// Instrument that has run the program.
+    pub instrument: Instrument,
+    /// Position in the job.
+    pub at: usize,
+    /// Name of the program.
+    pub program: &'static str,
+    /// Time at which the program ended.
+    pub ended_at: RigTime,
 }
 
 /// Purpose of a program.
@@ -48,8 +87,8 @@ pub(super) struct OpenQuery {
 pub(super) enum Purpose {
     /// Opens, identifies and sets up the instrument.
     Prepare,
-    /// Query of the measuring job, with its position and the name of its program.
-    Query(usize, &'static str),
+    /// Queries of the measuring job.
+    Query,
     /// Makes the instrument safe.
     Safe,
     /// A query whose job has been dropped.
@@ -76,9 +115,11 @@ struct Slot {
     queue: VecDeque<OpenQuery>,
     safety: Safety,
     busy: Option<(u64, Purpose)>,
+    /// Queries of the program under way.
+    parts: Vec<Part>,
     waiting: Option<ProgramAnswer>,
-    /// Consecutive failed queries after which the link had to resynchronise.
-    failures: u8,
+    /// Consecutive failures of each program that has failed.
+    failures: BTreeMap<&'static str, u8>,
 }
 
 /// Queues and open programs of all instruments.
@@ -101,8 +142,9 @@ impl Instruments {
             queue: VecDeque::new(),
             safety: Safety::Safe,
             busy: None,
+            parts: Vec::new(),
             waiting: None,
-            failures: 0,
+            failures: BTreeMap::new(),
         };
         Self {
             slots: ends.into_iter().map(slot).collect(),
@@ -136,7 +178,7 @@ impl Instruments {
         unready.collect()
     }
 
-    /// Appends a query of the measuring job.
+    /// Appends queries of the measuring job.
     pub fn queue(&mut self, instrument: Instrument, query: OpenQuery) {
         let queue = &mut self.slots[instrument.index()].queue;
         queue.push_back(query);
@@ -146,26 +188,33 @@ impl Instruments {
     /// Removes the queries that wait for an instrument, because one before them failed; returns their positions.
     pub fn drop_queue(&mut self, instrument: Instrument) -> Vec<usize> {
         let queue = std::mem::take(&mut self.slots[instrument.index()].queue);
-        queue.into_iter().map(|it| it.at).collect()
+        let parts = queue.into_iter().flat_map(|it| it.parts);
+        parts.map(|it| it.at).collect()
     }
 
-    /// Counts a failed query after which the link has to resynchronise; returns the number of consecutive ones.
-    pub fn failed(&mut self, instrument: Instrument) -> u8 {
+    /// Returns the queries of the program that has ended.
+    pub fn take_parts(&mut self, instrument: Instrument) -> Vec<Part> {
+        std::mem::take(&mut self.slots[instrument.index()].parts)
+    }
+
+    /// Counts a failed query; returns the number of consecutive ones with this program.
+    pub fn failed(&mut self, instrument: Instrument, program: &'static str) -> u8 {
         let failures = &mut self.slots[instrument.index()].failures;
-        *failures = failures.saturating_add(1);
-        *failures
+        let times = failures.entry(program).or_default();
+        *times = times.saturating_add(1);
+        *times
     }
 
-    /// Resets the count after a query that succeeded.
-    pub fn succeeded(&mut self, instrument: Instrument) {
-        self.slots[instrument.index()].failures = 0;
+    /// Resets the count of a program after a query that succeeded.
+    pub fn succeeded(&mut self, instrument: Instrument, program: &str) {
+        self.slots[instrument.index()].failures.remove(program);
     }
 
     /// Drops every query, and makes the safe program due on each instrument whose output may be on.
     pub fn make_safe(&mut self, now: RigTime) {
         for slot in &mut self.slots {
             slot.queue.clear();
-            if let Some((_, purpose @ Purpose::Query(..))) = &mut slot.busy {
+            if let Some((_, purpose @ Purpose::Query)) = &mut slot.busy {
                 *purpose = Purpose::Dropped;
             }
             let is_under_way = matches!(slot.busy, Some((_, Purpose::Safe)));
@@ -217,7 +266,7 @@ impl Instruments {
                 Some((Purpose::Prepare, Program::default()))
             } else {
                 let query = slot.queue.front();
-                query.map(|it| (Purpose::Query(it.at, it.name), it.program.clone()))
+                query.map(|it| (Purpose::Query, it.program.clone()))
             };
             let Some((purpose, program)) = next else {
                 continue;
@@ -225,7 +274,7 @@ impl Instruments {
             self.ticket += 1;
             let start = match purpose {
                 Purpose::Safe => Start::Safe,
-                Purpose::Prepare | Purpose::Query(..) | Purpose::Dropped => Start::SetUp,
+                Purpose::Prepare | Purpose::Query | Purpose::Dropped => Start::SetUp,
             };
             let request = ProgramRequest {
                 ticket: self.ticket,
@@ -240,8 +289,8 @@ impl Instruments {
             slot.busy = Some((self.ticket, purpose));
             match purpose {
                 Purpose::Prepare => slot.prepare = false,
-                Purpose::Query(..) => {
-                    slot.queue.pop_front();
+                Purpose::Query => {
+                    slot.parts = slot.queue.pop_front().map_or_else(Vec::new, |it| it.parts);
                     slot.safety = Safety::MayBeOn;
                 }
                 Purpose::Safe | Purpose::Dropped => {}
@@ -252,11 +301,7 @@ impl Instruments {
     /// Returns the next answer that has arrived; drops that of a program that a later request has ended.
     pub fn next_answer(&mut self) -> Option<(Instrument, Purpose, ProgramAnswer)> {
         for slot in &mut self.slots {
-            while let Some(answer) = slot
-                .waiting
-                .take()
-                .or_else(|| slot.ends.answers.try_recv().ok())
-            {
+            while let Some(answer) = arrival::next((&mut slot.ends.answers, &mut slot.waiting)) {
                 if let Some((_, purpose)) = slot.busy.take_if(|it| it.0 == answer.ticket) {
                     return Some((slot.ends.instrument, purpose, answer));
                 }
@@ -267,18 +312,9 @@ impl Instruments {
 
     /// Resolves when an answer has arrived from any instrument.
     pub async fn answer(&mut self) {
-        let slots = &mut self.slots;
-        poll_fn(|context| {
-            for slot in slots.iter_mut().filter(|slot| slot.busy.is_some()) {
-                if slot.waiting.is_some() {
-                    return Poll::Ready(());
-                }
-                if let Poll::Ready(Some(answer)) = slot.ends.answers.poll_recv(context) {
-                    slot.waiting = Some(answer);
-                    return Poll::Ready(());
-                }
-            }
-            Poll::Pending
+        arrival::any(&mut self.slots, |slot| {
+            let is_busy = slot.busy.is_some();
+            is_busy.then_some((&mut slot.ends.answers, &mut slot.waiting))
         })
         .await;
     }

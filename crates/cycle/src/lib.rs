@@ -22,10 +22,13 @@
 //! ```
 
 mod answers;
+mod arrival;
 mod commission;
+mod converter;
 mod event;
 mod failures;
 mod instruments;
+mod jobs;
 mod jog_preview;
 mod lateness;
 mod open_job;
@@ -45,6 +48,7 @@ pub use snapshot::{Snapshot, snapshots};
 pub use traffic::LineEnds;
 
 use bus::{Pace, Reading, Timer};
+use converter::Converter;
 pub use event::Event;
 use failures::Failures;
 use instruments::Instruments;
@@ -52,10 +56,9 @@ use machine::guard::Guard;
 use machine::handling::NestId;
 use machine::handling::inside::Inside;
 use machine::handling::output::{NestDone, NestJob};
-use machine::instrument::act::{Job, JobDone};
+use machine::instrument::act::JobDone;
 use machine::rig::drive::Outputs;
 use machine::rig::image::Image;
-use machine::rig::level::Correction;
 use machine::rig::point::{DigitalIn, DigitalOutput};
 use machine::rig::wiring::{LineId, Wiring};
 use machine::station::Station;
@@ -71,7 +74,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 use texts::Message;
+use tokio::runtime::Handle;
 use tokio::sync::{mpsc, watch};
+use tokio::task::JoinHandle;
 use traffic::{Purpose, Traffic};
 use units::{RigTime, Span};
 
@@ -128,11 +133,13 @@ pub struct Cycle {
     wiring: Arc<Wiring>,
     pace: Pace,
     station: Station,
-    guard: Guard,
+    /// Guard of a rig with a feeder; `None` at a rack, where nothing moves.
+    guard: Option<Guard>,
     image: Image,
     outputs: Outputs,
     traffic: Traffic,
     instruments: Instruments,
+    converter: Converter,
     failures: Failures,
     links: CycleLinks,
     job_done: Option<JobDone>,
@@ -170,28 +177,31 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Takes over the lines and the instruments; writes nothing before [`Cycle::run`].
+    /// Takes over the lines and the instruments; writes nothing before [`Cycle::run`]. Conversions get the priority of the
+    /// calling thread.
     pub fn new(
         wiring: Arc<Wiring>,
         pace: Pace,
         station: Station,
-        guard: Guard,
+        guard: Option<Guard>,
         (lines, instruments): (Vec<LineEnds>, Vec<InstrumentEnds>),
         links: CycleLinks,
     ) -> Self {
         assert_eq!(lines.len(), wiring.lines.len(), "a line without its task");
+        let interlocks = wiring.guarded();
         Self {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
             traffic: Traffic::new(&wiring, lines),
             instruments: Instruments::new(&wiring, instruments),
+            converter: Converter::new(pace),
             failures: Failures::new(&wiring),
             wiring,
             timer: Timer::new(pace),
             pace,
             inside: station.ledger().parts_to_find(),
             station,
-            guard,
+            guard: guard.map(|it| it.with_interlocks(interlocks)),
             links,
             job_done: None,
             job_nest: NestId::FIRST,
@@ -212,6 +222,11 @@ impl Cycle {
             lost_status: None,
             lateness: Lateness::default(),
         }
+    }
+
+    /// Spawns [`Self::run`] on the runtime of `handle`, from this crate: see [`bus::spawn`].
+    pub fn spawn(self, handle: &Handle) -> JoinHandle<Ended> {
+        handle.spawn(self.run())
     }
 
     /// Verifies the modules, then takes one turn after another until the station has ended and the outputs are safe.
@@ -247,8 +262,8 @@ impl Cycle {
             }
             if let Some(ending) = output.record.ending.take() {
                 assert!(output.rig.safe, "the run ends with outputs on");
-                self.make_safe().await;
-                return self.ended(ending);
+                let is_safe = self.make_safe().await;
+                return self.ended(if is_safe { ending } else { Ending::Alarm });
             }
             if self.job_done.is_none() && output.rig.wake_at.is_none_or(|at| at > now) {
                 self.wait(now, output.rig.wake_at).await;
@@ -275,6 +290,9 @@ impl Cycle {
         }
         while let Some((instrument, purpose, answer)) = self.instruments.next_answer() {
             self.take_program(instrument, purpose, answer);
+        }
+        while let Some(finished) = self.converter.next_result() {
+            self.take_finished(finished, now);
         }
         for module in self.image.take_resets() {
             let module = self.wiring.module(module);
@@ -336,8 +354,7 @@ impl Cycle {
             "a motion while outputs go safe"
         );
         for movement in std::mem::take(&mut output.rig.motions) {
-            let situation = self.station.situation(now, &self.image);
-            match self.guard.clear(&self.station.motion(movement), &situation) {
+            match self.judge(movement, now) {
                 Ok(cleared) => {
                     if let Err(cannot) = self.outputs.apply(cleared) {
                         self.station.refused(
@@ -351,7 +368,8 @@ impl Cycle {
                     self.station.driven(movement, now, &self.image);
                     self.refused = None;
                 }
-                Err(refusal) => {
+                Err(refused) => {
+                    let (situation, refusal) = *refused;
                     self.refused = Some(self.refused_motion(movement, &situation, &refusal));
                     self.station
                         .refused(movement, &refusal.message(), now, output);
@@ -376,6 +394,7 @@ impl Cycle {
                 self.outputs.confirmed(module);
             }
             self.instruments.make_safe(now);
+            self.converter.forget();
         }
         for (point, on) in output.rig.outputs.drain(..) {
             self.set_output(point, on);
@@ -419,37 +438,6 @@ impl Cycle {
         self.traffic.measuring_lines().contains(&line)
     }
 
-    /// Starts a measuring job: writes its outputs together with those of the turn, and queues its readings.
-    fn start(&mut self, job: Job) {
-        self.traffic.begin_job();
-        let commands = match job {
-            Job::Set(outputs) => {
-                for (point, on) in outputs {
-                    self.set_output(point, on);
-                }
-                Vec::new()
-            }
-            Job::Level(outputs) => {
-                for (output, volts) in outputs {
-                    if let Err(cannot) = self.outputs.set_supply(output, volts, Correction::NONE) {
-                        self.note_alarm(Alarm::bus(&Message::detail("not_driven", cannot)));
-                    }
-                }
-                Vec::new()
-            }
-            Job::Read(points) => self.wiring.reads(&points),
-            Job::Restarts => self.traffic.measuring_resets(),
-            Job::Query(queries) => {
-                self.start_queries(&queries);
-                Vec::new()
-            }
-            Job::Mask(inputs) => self.wiring.masks(&inputs),
-        };
-        for (line, command) in commands {
-            self.traffic.queue(line, command, Purpose::Job);
-        }
-    }
-
     /// Returns the first instant at which the last poll of the emergency-stop contact is too old; `None` if it is too
     /// old already.
     fn contact_unknown(&self, now: RigTime) -> Option<RigTime> {
@@ -470,6 +458,7 @@ impl Cycle {
             biased;
             () = self.traffic.answer() => {}
             () = self.instruments.answer() => {}
+            () = self.converter.result() => {}
             asked = self.links.orders.recv(), if !self.orders_closed => {
                 self.orders_closed = asked.is_none();
                 self.pending_orders.extend(asked);

@@ -1,6 +1,7 @@
 //! Tracks the transactions and queries of a measuring job, and the lost writes that it waits for.
 
 use machine::instrument::act::JobDone;
+use machine::instrument::conversion::Converted;
 use machine::instrument::query::Delivered;
 use machine::rig::wiring::ModuleId;
 use texts::Message;
@@ -15,6 +16,7 @@ pub(super) struct OpenJob {
     rewrites: Vec<ModuleId>,
     /// What each query has delivered so far, by its position in the job.
     delivered: Vec<Delivered>,
+    converted: Option<Converted>,
 }
 
 impl OpenJob {
@@ -71,6 +73,12 @@ impl OpenJob {
         }
     }
 
+    /// Closes the conversion; returns the result of the job.
+    pub(super) fn conversion_done(&mut self, at: RigTime, converted: Converted) -> Option<JobDone> {
+        self.converted = Some(converted);
+        self.part_done(at, None)
+    }
+
     /// Returns the result of the job; `None` while a transaction is open or a lost write waits for its repetition.
     pub(super) fn if_empty(&mut self, at: RigTime) -> Option<JobDone> {
         let is_done = self.parts == 0 && self.rewrites.is_empty();
@@ -81,6 +89,7 @@ impl OpenJob {
                 Some(_) => Vec::new(),
                 None => std::mem::take(&mut self.delivered),
             },
+            converted: self.converted.take(),
         })
     }
 }

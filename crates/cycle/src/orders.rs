@@ -125,14 +125,11 @@ impl Cycle {
 
     /// Drives a jog; a refusal by the guard becomes the answer to the order and raises no alarm.
     pub(super) fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
-        let situation = self.station.situation(now, &self.image);
-        let cleared = self
-            .guard
-            .clear(&self.station.motion(movement), &situation)
-            .map_err(|refusal| {
-                self.refused = Some(self.refused_motion(movement, &situation, &refusal));
-                Refused::Collision(Box::new(refusal.message()))
-            })?;
+        let cleared = self.judge(movement, now).map_err(|refused| {
+            let (situation, refusal) = *refused;
+            self.refused = Some(self.refused_motion(movement, &situation, &refusal));
+            Refused::Collision(Box::new(refusal.message()))
+        })?;
         self.outputs.apply(cleared).map_err(|cannot| {
             Refused::Collision(Box::new(Message::detail("not_driven", cannot)))
         })?;

@@ -3,6 +3,7 @@
 use super::{Cycle, Snapshot};
 use machine::dut::verdict::Bin;
 use machine::guard::{Actuator, Position};
+use machine::handling::Place;
 use machine::handling::ledger::{Part, PartRole};
 use machine::handling::mechanism::SENSOR_AGE;
 use machine::rig::point::DigitalInput;
@@ -101,10 +102,14 @@ impl Cycle {
             buttons: buttons(station),
             actuators: Actuator::ALL
                 .iter()
-                .map(|actuator| self.actuator(*actuator, now))
+                .filter_map(|actuator| self.actuator(*actuator, now))
                 .collect(),
             places: places(station),
-            bins: wiring.axis.bins().map(|it| it.name().to_owned()).collect(),
+            bins: wiring
+                .bins()
+                .iter()
+                .map(|it| it.name().to_owned())
+                .collect(),
             inputs: wiring
                 .digital_inputs()
                 .map(|(name, point)| (name.to_owned(), input(point)))
@@ -144,21 +149,22 @@ impl Cycle {
         phases.map(|(name, s)| (name.to_owned(), s)).into()
     }
 
-    fn actuator(&self, actuator: Actuator, now: RigTime) -> ActuatorView {
-        let mechanism = self.station.mechanism();
+    /// Returns the view of an actuator; `None` on a rig where nothing moves.
+    fn actuator(&self, actuator: Actuator, now: RigTime) -> Option<ActuatorView> {
+        let mechanism = self.station.mechanism()?;
         let (from_mm, to_mm) = match mechanism.position(actuator, now, &self.image) {
             Position::At(mm) => (mm, mm),
             Position::Between { from_mm, to_mm } => (from_mm.min(to_mm), from_mm.max(to_mm)),
         };
         let strokes = mechanism.strokes();
-        ActuatorView {
+        Some(ActuatorView {
             name: actuator.name().into(),
             from_mm,
             to_mm,
             moving: mechanism
                 .moving()
                 .any(|movement| movement.motion(strokes).target_mm(actuator).is_some()),
-        }
+        })
     }
 }
 
@@ -202,7 +208,11 @@ fn places(station: &Station) -> BTreeMap<String, Token> {
         ..Token::default()
     };
     let each = station.ledger().each();
-    each.map(|(place, part)| (place.name().to_owned(), part.map_or_else(unnumbered, token)))
+    let name = |place: Place| match place {
+        Place::Socket(number) => format!("socket_{number}"),
+        Place::Pocket | Place::Nest(_) | Place::Gripper | Place::Falling => place.name().to_owned(),
+    };
+    each.map(|(place, part)| (name(place), part.map_or_else(unnumbered, token)))
         .collect()
 }
 

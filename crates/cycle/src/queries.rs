@@ -1,11 +1,12 @@
 //! Queries of the measuring job on SCPI instruments; the instruments at the start and at the end of a run.
 
-use super::instruments::{OpenQuery, Purpose};
+use super::converter::Finished;
+use super::instruments::{Deliverer, OpenQuery, Part, Purpose};
 use super::{Cycle, Event};
 use bus::instrument::{ProgramAnswer, message};
 use machine::instrument::query::{Delivered, Instrument, Query};
 use machine::station::trouble::Alarm;
-use scpi::Failure;
+use scpi::{Failure, Reply};
 use std::sync::atomic::Ordering;
 use texts::Message;
 use units::{RigTime, Span};
@@ -18,17 +19,23 @@ const SAFE_WITHIN: Span = Span::ms(5_000);
 const LOOK: Span = Span::ms(50);
 
 impl Cycle {
-    /// Queues the programs of a job; one that a profile does not have makes the job fail before any program starts.
+    /// Queues the programs of a job, those of one instrument in one run; one that a profile does not have makes the job fail before any program starts.
     pub(super) fn start_queries(&mut self, queries: &[Query]) {
         let programs: Result<Vec<_>, Message> = queries.iter().map(|it| self.program(it)).collect();
         match programs {
             Err(refused) => self.traffic.fail_job(refused),
             Ok(programs) => {
+                let mut all: Vec<(Instrument, OpenQuery)> = Vec::new();
                 for (at, (query, program)) in queries.iter().zip(programs).enumerate() {
                     self.traffic.query_begun();
-                    let name = query.program;
-                    let open = OpenQuery { at, name, program };
-                    self.instruments.queue(query.instrument, open);
+                    let open = OpenQuery::new(at, query.program, program);
+                    match all.iter_mut().find(|it| it.0 == query.instrument) {
+                        Some((_, earlier)) => earlier.append(open),
+                        None => all.push((query.instrument, open)),
+                    }
+                }
+                for (instrument, open) in all {
+                    self.instruments.queue(instrument, open);
                 }
             }
         }
@@ -51,7 +58,7 @@ impl Cycle {
             .with("program", program)
     }
 
-    /// Takes the end of a program of an instrument.
+    /// Takes the result of a program that an instrument has ended.
     pub(super) fn take_program(
         &mut self,
         instrument: Instrument,
@@ -64,18 +71,7 @@ impl Cycle {
         );
         match purpose {
             Purpose::Prepare => self.prepared(instrument, answer),
-            Purpose::Query(at, program) => {
-                let ended_at = answer.answered_at;
-                match self.delivered(instrument, program, answer) {
-                    Ok(delivered) => self.query_done(at, ended_at, Ok(delivered)),
-                    Err(trouble) => {
-                        let rest = self.instruments.drop_queue(instrument);
-                        for at in std::iter::once(at).chain(rest) {
-                            self.query_done(at, ended_at, Err(trouble.clone()));
-                        }
-                    }
-                }
-            }
+            Purpose::Query => self.take_queries(instrument, answer),
             Purpose::Safe => {
                 let is_safe = answer.outcome.is_ok();
                 let now = answer.answered_at;
@@ -88,41 +84,105 @@ impl Cycle {
         }
     }
 
+    /// Gives each query of a program its replies. After a failure none of them has values.
+    fn take_queries(&mut self, instrument: Instrument, answer: ProgramAnswer) {
+        let parts = self.instruments.take_parts(instrument);
+        assert!(!parts.is_empty(), "a program of the job without a query");
+        let ended_at = answer.answered_at;
+        let deliverer = |part: &Part| Deliverer {
+            instrument,
+            at: part.at,
+            program: part.name,
+            ended_at,
+        };
+        match answer.outcome {
+            Ok(mut replies) => {
+                let wanted: usize = parts.iter().map(|it| it.values).sum();
+                assert_eq!(replies.len(), wanted, "a value for each query");
+                for part in &parts {
+                    self.instruments.succeeded(instrument, part.name);
+                    let rest = replies.split_off(part.values);
+                    self.decode(deliverer(part), std::mem::replace(&mut replies, rest));
+                }
+            }
+            Err(failure) => {
+                let trouble = self.failed(instrument, parts[0].name, &failure);
+                for part in &parts {
+                    self.deliver(deliverer(part), Err(trouble.clone()));
+                }
+            }
+        }
+    }
+
+    /// Makes values of the replies to a query; those with a block beside the cycle, because a block may be long.
+    fn decode(&mut self, query: Deliverer, replies: Vec<Reply>) {
+        let dialect = self.wiring.instrument(query.instrument).profile.dialect;
+        let has_block = replies.iter().any(|it| matches!(it, Reply::Block(_)));
+        let decode = move || Finished::Decoded(query, Delivered::of(dialect, &replies));
+        match has_block {
+            true => self.converter.begin(decode),
+            false => self.take_finished(decode(), query.ended_at),
+        }
+    }
+
+    /// Takes the result of a calculation.
+    pub(super) fn take_finished(&mut self, finished: Finished, now: RigTime) {
+        match finished {
+            Finished::Converted(converted) => {
+                let done = self.traffic.conversion_done(now, converted);
+                self.job_done = done.or(self.job_done.take());
+            }
+            Finished::Decoded(query, result) => {
+                let result = result
+                    .map_err(|error| self.refused_query(query.instrument, query.program, &error));
+                self.deliver(query, result);
+            }
+        }
+    }
+
+    /// Closes a query; after a failure also those that wait behind it.
+    fn deliver(&mut self, query: Deliverer, result: Result<Delivered, Message>) {
+        let rest = match &result {
+            Ok(_) => Vec::new(),
+            Err(_) => self.instruments.drop_queue(query.instrument),
+        };
+        let trouble = result.as_ref().err().cloned();
+        assert!(
+            query.ended_at <= self.pace.now(),
+            "a query ends in the future"
+        );
+        self.query_done(query.at, query.ended_at, result);
+        for (at, trouble) in rest.into_iter().zip(trouble.into_iter().cycle()) {
+            self.query_done(at, query.ended_at, Err(trouble));
+        }
+    }
+
     fn query_done(&mut self, at: usize, now: RigTime, result: Result<Delivered, Message>) {
         if let Some(done) = self.traffic.query_done(at, now, result) {
             self.job_done = Some(done);
         }
     }
 
-    /// Returns what a program has delivered, or the reason why a part is void. An instrument that is lost, or that fails
-    /// as often in a row as a module may, raises an alarm too.
-    fn delivered(
+    /// Returns the reason why the part is void. Raises an alarm too when the instrument is lost, or when one of its
+    /// programs has failed as often in a row as a module may.
+    fn failed(
         &mut self,
         instrument: Instrument,
         program: &'static str,
-        answer: ProgramAnswer,
-    ) -> Result<Delivered, Message> {
-        let wired = self.wiring.instrument(instrument);
-        let failure = match answer.outcome {
-            Ok(replies) => {
-                self.instruments.succeeded(instrument);
-                return Delivered::of(wired.profile.dialect, &replies)
-                    .map_err(|error| self.refused_query(instrument, program, &error));
-            }
-            Err(failure) => failure,
-        };
+        failure: &Failure,
+    ) -> Message {
+        let name = self.wiring.instrument(instrument).name.clone();
         let trouble = Message::new("detail", "query_failed")
-            .with("instrument", &wired.name)
+            .with("instrument", &name)
             .with("program", program)
-            .with_inner("failure", &message(&failure));
-        if failure.is_doubt() {
-            let times = self.instruments.failed(instrument);
-            if is_lost(&failure) || times >= self.wiring.bus.tries {
-                let name = &self.wiring.instrument(instrument).name;
-                self.note_alarm(Alarm::instrument(name, &trouble));
+            .with_inner("failure", &message(failure));
+        if !may_be_the_part(failure) {
+            let times = self.instruments.failed(instrument, program);
+            if is_lost(failure) || times >= self.wiring.bus.tries {
+                self.note_alarm(Alarm::instrument(&name, &trouble));
             }
         }
-        Err(trouble)
+        trouble
     }
 
     fn prepared(&mut self, instrument: Instrument, answer: ProgramAnswer) {
@@ -158,6 +218,8 @@ impl Cycle {
                 break;
             }
             self.attend_instruments(now, false).await;
+            // The watchdog of the service and the screens see that the program lives.
+            self.publish(now, false);
         }
         self.instruments.end_preparation().is_empty()
     }
@@ -172,8 +234,9 @@ impl Cycle {
         }
     }
 
-    /// Makes the instruments safe at the end of a run; sends an alarm for each that has not confirmed it in time.
-    pub(super) async fn make_instruments_safe(&mut self) {
+    /// Makes the instruments safe at the end of a run; sends an alarm for each that has not confirmed it in time. Returns
+    /// true when all have.
+    pub(super) async fn make_instruments_safe(&mut self) -> bool {
         let began = self.pace.now();
         let end = began + SAFE_WITHIN;
         self.instruments.make_safe(began);
@@ -181,11 +244,12 @@ impl Cycle {
             self.attend_instruments(self.pace.now(), true).await;
         }
         let left: Vec<Instrument> = self.instruments.may_be_on().collect();
-        for instrument in left {
-            let name = &self.wiring.instrument(instrument).name;
+        for instrument in &left {
+            let name = &self.wiring.instrument(*instrument).name;
             let alarm = Alarm::instrument_not_safe(name);
             self.send(Event::Alarm(alarm, self.pace.now()));
         }
+        left.is_empty()
     }
 
     /// Keeps lines and instruments going until the next answer, at most for [`LOOK`].
@@ -197,6 +261,14 @@ impl Cycle {
             self.wait(now, Some(now + LOOK)).await;
         }
     }
+}
+
+/// Returns true for a failure that a bad part can cause on an instrument without fault.
+const fn may_be_the_part(failure: &Failure) -> bool {
+    matches!(
+        failure,
+        Failure::OverRange { .. } | Failure::NotANumber { .. }
+    )
 }
 
 /// Returns true for a failure that only a person can end.

@@ -48,10 +48,10 @@ impl Cycle {
         }
     }
 
-    /// Makes the outputs of the modules safe, then the instruments.
-    pub(super) async fn make_safe(&mut self) {
+    /// Makes the outputs of the modules safe, then the instruments. Returns true when every instrument has confirmed it.
+    pub(super) async fn make_safe(&mut self) -> bool {
         self.write_safe_outputs().await;
-        self.make_instruments_safe().await;
+        self.make_instruments_safe().await
     }
 
     /// Writes the safe outputs and waits until every module has confirmed, or the time is up.

@@ -13,12 +13,14 @@ use dcon::{Command, Reply};
 use machine::guard::{Actuator, PartSize};
 use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
+use machine::instrument::act::Job;
 use machine::instrument::query::{Instrument, Query};
 use machine::rig::instruments::InstrumentWiring;
 use machine::station::Plan;
 use meter::Meter;
-use scpi::Profile;
+use scpi::{Failure, Profile};
 use std::sync::Mutex;
+use tokio::task::JoinHandle;
 
 /// Messages to instruments and writes to modules, in their order.
 #[derive(Debug, Clone, Default)]
@@ -56,6 +58,8 @@ struct Bench {
     cycle: Cycle,
     pace: Pace,
     log: Log,
+    /// Tasks of the instruments.
+    tasks: Vec<JoinHandle<Result<(), Failure>>>,
     events: mpsc::UnboundedReceiver<Event>,
 }
 
@@ -126,6 +130,7 @@ impl Bench {
                 answers,
             }
         });
+        let mut tasks = Vec::new();
         let instruments = wiring
             .instrument_ids()
             .zip(&meters)
@@ -135,7 +140,8 @@ impl Bench {
                 let link = Link::new(meter.opener(pace, &log), settings, pace, 7);
                 let (requests, requested) = mpsc::channel(1);
                 let (answer, answers) = mpsc::channel(1);
-                tokio::spawn(serve(link, pace, requested, answer));
+                let safe = wired.profile.safe();
+                tasks.push(tokio::spawn(serve(link, pace, requested, answer, safe)));
                 InstrumentEnds {
                     instrument,
                     requests,
@@ -155,12 +161,13 @@ impl Bench {
             readings: None,
             snapshots: None,
         };
-        let guard = Guard::build(&plant.scene).unwrap();
+        let guard = Guard::build(plant.scene.as_ref().unwrap()).unwrap();
         let station = station(&plant, &wiring, &guard, recipe);
         Self {
-            cycle: Cycle::new(wiring, pace, station, guard, ends, links),
+            cycle: Cycle::new(wiring, pace, station, Some(guard), ends, links),
             pace,
             log,
+            tasks,
             events: received,
         }
     }
@@ -233,6 +240,8 @@ fn station(
     };
     let strokes = Strokes {
         length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
+        sensor_off_mm: Actuator::ALL.map(|actuator| guard.sensor_off_mm(actuator)),
+        probes_beside_pusher: false,
         axis_mm: Vec::new(),
     };
     let rig = machine::dut::device::Rig {
@@ -255,6 +264,6 @@ fn station(
         serials: Default::default(),
         prompts: Vec::new(),
     };
-    let mechanism = Mechanism::new(strokes, wiring.strokes, size);
-    Station::new(plan, device.unwrap(), wiring.axis.clone(), mechanism)
+    let mechanism = Mechanism::new(strokes, wiring.feeder().unwrap().strokes, size);
+    Station::new(plan, device.unwrap(), wiring.axis().clone(), mechanism)
 }

@@ -4,22 +4,25 @@
 //! Every line has at most one transaction under way. Every second transaction of the contact's line polls the module
 //! with the contact ([`super::scan_schedule`]).
 
+use super::arrival;
 use super::open_job::OpenJob;
 use super::scan_schedule::{ScanPoll, ScanSchedule};
 use bus::{Answer, Request};
 use dcon::{Command, Common};
 use machine::instrument::act::JobDone;
+use machine::instrument::conversion::Converted;
 use machine::instrument::query::Delivered;
 use machine::rig::point::{DigitalIn, DigitalInput};
 use machine::rig::wiring::{LineId, ModuleId, Wiring};
 use std::collections::{BTreeSet, VecDeque};
-use std::future::poll_fn;
 use std::sync::Arc;
-use std::task::Poll;
 use texts::Message;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
+/// Pause between two polls of inputs that motions need, on a line that the scan of the machine omits; much shorter than
+/// the age at which an input counts as unread. No poll comes between the transactions of a measuring job.
+const INTERLOCK_PERIOD: Span = Span::ms(100);
 /// Largest number of commands that wait for one line; a verification queues far fewer.
 const MAX_QUEUE: usize = 2_000;
 
@@ -32,15 +35,28 @@ fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
         .collect()
 }
 
-/// Returns the modules of a line, by address, that carry inputs of the machine or beams of bins. The scan omits the
-/// inputs of a fixture, which a test reads itself.
-fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
+/// Returns the modules of a line, by address, that carry inputs of the machine, beams of bins or contacts of sockets. The
+/// scan omits the inputs of a fixture, which a test reads itself.
+fn scanned_modules(wiring: &Wiring, line: LineId) -> BTreeSet<ModuleId> {
     let machine = DigitalIn::ALL.iter().copied().map(DigitalInput::from);
-    let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
-    let modules = machine.chain(beams).map(|it| wiring.digital_in(it).module);
-    let modules: BTreeSet<ModuleId> = modules.collect();
+    let scanned = machine.chain(wiring.scanned_inputs());
+    let modules = scanned.filter_map(|it| Some(wiring.wired_in(it)?.module));
+    on_line(wiring, line, modules)
+}
+
+/// Returns the modules of a line with an input that a motion needs.
+fn interlocked_modules(wiring: &Wiring, line: LineId) -> BTreeSet<ModuleId> {
+    let inputs = wiring.interlocks.iter().map(|it| it.input);
+    on_line(wiring, line, inputs.map(|it| wiring.digital_in(it).module))
+}
+
+fn on_line(
+    wiring: &Wiring,
+    line: LineId,
+    modules: impl Iterator<Item = ModuleId>,
+) -> BTreeSet<ModuleId> {
     let here = |module: &ModuleId| wiring.module(*module).line == line;
-    modules.into_iter().filter(here).collect()
+    modules.filter(here).collect()
 }
 
 /// The two queue ends of one line that the cycle holds.
@@ -83,6 +99,19 @@ struct Slot {
     heartbeat_due: RigTime,
     scan_schedule: ScanSchedule,
     scan_due: RigTime,
+    /// Polls of modules with an input that a motion needs and that the scan of the machine omits.
+    interlocks: Vec<Command>,
+    interlocks_due: RigTime,
+    next_interlock: usize,
+}
+
+impl Slot {
+    /// Returns the next poll of an input that a motion needs; `None` on a line without such an input.
+    fn interlock_poll(&mut self) -> Option<Command> {
+        let poll = self.interlocks.get(self.next_interlock).copied()?;
+        self.next_interlock = (self.next_interlock + 1) % self.interlocks.len();
+        Some(poll)
+    }
 }
 
 /// Queues and open transactions of all lines.
@@ -114,9 +143,15 @@ impl Traffic {
         let slots = lines
             .into_iter()
             .map(|ends| {
-                let mut scan = scanned_modules(wiring, ends.line);
+                let scanned = scanned_modules(wiring, ends.line);
+                let mut scan: Vec<ModuleId> = scanned.iter().copied().collect();
                 scan.retain(|module| *module != estop);
+                let interlocks = interlocked_modules(wiring, ends.line);
+                let apart = interlocks.difference(&scanned).filter(|it| **it != estop);
                 Slot {
+                    interlocks: apart.map(|it| wiring.poll(*it)).collect(),
+                    interlocks_due: RigTime(0),
+                    next_interlock: 0,
                     tries: wiring.tries_on(ends.line),
                     busy: None,
                     waiting: None,
@@ -276,6 +311,20 @@ impl Traffic {
         Some(done)
     }
 
+    /// Makes the measuring job wait for a conversion.
+    pub fn conversion_begun(&mut self) {
+        if let Some(job) = &mut self.job {
+            job.part_begun();
+        }
+    }
+
+    /// Closes the conversion of the measuring job; returns the result of the job.
+    pub fn conversion_done(&mut self, at: RigTime, converted: Converted) -> Option<JobDone> {
+        let done = self.job.as_mut()?.conversion_done(at, converted)?;
+        self.job = None;
+        Some(done)
+    }
+
     /// Returns the result of the measuring job if it needed no transaction, else `None`.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
         let done = self.job.as_mut()?.if_empty(now)?;
@@ -309,6 +358,8 @@ impl Traffic {
             let slot = &mut self.slots[index];
             let tries = match purpose {
                 Purpose::Check => self.check_tries,
+                // The next poll is the repetition; several tries would hold up the heartbeat of the line.
+                Purpose::Scan if slot.interlocks.contains(&command) => 1,
                 Purpose::Write { .. } | Purpose::Job | Purpose::Scan | Purpose::Heartbeat => {
                     slot.tries
                 }
@@ -353,7 +404,17 @@ impl Traffic {
         if let Some(next) = slot.queue.pop_front() {
             return Some(next);
         }
-        if !self.scanning || slot.scan_due > now {
+        if !self.scanning {
+            return None;
+        }
+        if self.job.is_none()
+            && slot.interlocks_due <= now
+            && let Some(poll) = slot.interlock_poll()
+        {
+            slot.interlocks_due = now + INTERLOCK_PERIOD;
+            return Some((poll, Purpose::Scan));
+        }
+        if slot.scan_due > now {
             return None;
         }
         let beam = self.beam.filter(|_| slot.ends.line == self.beam_line);
@@ -369,11 +430,7 @@ impl Traffic {
     /// Returns the next answer that has arrived; `None` if there is none.
     pub fn next_answer(&mut self) -> Option<(LineId, Purpose, Answer)> {
         for slot in &mut self.slots {
-            let Some(answer) = slot
-                .waiting
-                .take()
-                .or_else(|| slot.ends.answers.try_recv().ok())
-            else {
+            let Some(answer) = arrival::next((&mut slot.ends.answers, &mut slot.waiting)) else {
                 continue;
             };
             assert!(slot.busy.is_some(), "an answer without a request");
@@ -385,18 +442,9 @@ impl Traffic {
 
     /// Resolves when an answer has arrived on any line.
     pub async fn answer(&mut self) {
-        let slots = &mut self.slots;
-        poll_fn(|context| {
-            for slot in slots.iter_mut().filter(|slot| slot.busy.is_some()) {
-                if slot.waiting.is_some() {
-                    return Poll::Ready(());
-                }
-                if let Poll::Ready(Some(answer)) = slot.ends.answers.poll_recv(context) {
-                    slot.waiting = Some(answer);
-                    return Poll::Ready(());
-                }
-            }
-            Poll::Pending
+        arrival::any(&mut self.slots, |slot| {
+            let is_busy = slot.busy.is_some();
+            is_busy.then_some((&mut slot.ends.answers, &mut slot.waiting))
         })
         .await;
     }
@@ -410,6 +458,7 @@ impl Traffic {
                 [
                     Some(slot.heartbeat_due),
                     self.scanning.then_some(slot.scan_due),
+                    (self.scanning && !slot.interlocks.is_empty()).then_some(slot.interlocks_due),
                 ]
             })
             .flatten()

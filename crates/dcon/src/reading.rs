@@ -127,6 +127,14 @@ impl Readings {
 
 fn hex(field: &[u8], range: TypeCode) -> Option<Value> {
     let steps = hex_number(field)? as u16;
+    if range.is_warm() {
+        // Nothing below the lower end exists here; some makers send FFFF and 0000 for a broken and a shorted wire.
+        return Some(match steps {
+            0x7FFF | 0xFFFF => Value::OverRange,
+            0 | 0x8000..=0xFFFE => Value::UnderRange,
+            1..=0x7FFE => Value::Hex(steps as i16),
+        });
+    }
     Some(match (range.unipolar_input(), steps) {
         (true, 0xFFFF) | (false, 0x7FFF) => Value::OverRange,
         (false, 0x8000) => Value::UnderRange,

@@ -86,7 +86,8 @@ impl TypeCode {
     }
 
     /// Returns the range of a temperature sensor: thermocouples J K T E R S B N C L M L-DIN (codes 0E to 19), and Pt100
-    /// (20 to 23 with 0.00385/K, 24 to 27 with 0.003916/K).
+    /// (20 to 23 with 0.00385/K, 24 to 27 with 0.003916/K; 2E and 80 of the 7015), and Pt1000 (2A). Other makers give
+    /// 20 to 24 other ranges: a code counts only together with the model name.
     fn temperature(self) -> Option<FullScale> {
         let (low, high) = match self.0 {
             0x0E => (-210.0, 760.0),
@@ -104,9 +105,16 @@ impl TypeCode {
             0x21 | 0x25 => (0.0, 100.0),
             0x22 | 0x26 => (0.0, 200.0),
             0x23 | 0x27 => (0.0, 600.0),
+            0x2A | 0x80 => (-200.0, 600.0),
+            0x2E => (-200.0, 200.0),
             _ => return None,
         };
         Some(FullScale::new(low, high, Unit::Celsius))
+    }
+
+    /// Returns true for a temperature range that begins at 0 C: its hex notation uses 0000 to 7FFF only.
+    pub(super) fn is_warm(self) -> bool {
+        self.temperature().is_some_and(|scale| scale.low == 0.0)
     }
 
     /// Returns true when the hex notation of this input runs from 0000 at the lower end to FFFF at the upper end,

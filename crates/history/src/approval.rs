@@ -20,7 +20,7 @@ pub struct Signature {
 
 /// Returns the engineers who saved or approved the text with this `hash` as `recipe`, each once, in order of time; none
 /// when the file `db` does not exist. A revision made on the command line does not count, because the command line
-/// checks nobody's identity.
+/// takes a name without a password.
 ///
 /// # Errors
 /// Fails when the history in `db` cannot be read.

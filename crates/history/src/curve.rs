@@ -1,4 +1,5 @@
-//! Curves kept as evidence of a reject: packs the samples of a signal into a blob, and unpacks it.
+//! Curves kept as evidence of a reject: packs the samples of a signal into a blob, and unpacks it. Only a part that did
+//! not pass keeps its curves; those of all parts would fill 20 GB a year.
 //!
 //! A sample is two LEB128 numbers (seven bits per byte, low ones first, the high bit set in all bytes but the last):
 //!

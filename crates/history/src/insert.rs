@@ -3,7 +3,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::store::{PROGRAM, RowIds};
 use super::{LotRecord, MeasurementRecord, PartRecord, SampleRecord};
-use super::{curve, reasons};
+use super::{curve, outbox, reasons};
 use machine::dut::Reason;
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
@@ -29,9 +29,9 @@ pub(super) fn run(
     )?;
     let made = transaction.query_row(
         "INSERT INTO run (lot_id, number, recipe_id, calibration_hash, opened_at_us, source, seed,
-           written_by)
+           written_by, uuid)
          SELECT lot.id, (SELECT ifnull(max(number), 0) + 1 FROM run WHERE lot_id = lot.id),
-           recipe.id, ?3, ?4, ?5, ?6, ?7
+           recipe.id, ?3, ?4, ?5, ?6, ?7, ?8
          FROM lot, recipe WHERE lot.name = ?1 AND recipe.hash = ?2
          RETURNING id, number",
         params![
@@ -41,7 +41,8 @@ pub(super) fn run(
             lot.opened_at_us,
             source,
             lot.seed.map(|seed| seed.to_string()),
-            PROGRAM
+            PROGRAM,
+            outbox::uuid(transaction)?
         ],
         |row| Ok((row.get(0)?, row.get(1)?)),
     )?;
@@ -63,9 +64,10 @@ pub(super) fn part(tx: &Transaction<'_>, row_ids: &mut RowIds, part: &PartRecord
     let texts: Vec<String> = part.reasons.iter().map(Reason::to_string).collect();
     let row = tx
         .prepare_cached(
-            "INSERT INTO part (run_id, kind, seq, serial, verdict, bin, reasons, judged_at_us,
+            "INSERT INTO part (id, run_id, kind, seq, serial, verdict, bin, reasons, judged_at_us,
                test_s, cycle_s, landed_bin, landed_at_us)
-             VALUES (?1, ?2, ?3, ?4, ?5, nullif(?6, ''), ?7, ?8, ?9, ?10, ?11, ?12)
+             VALUES (max(ifnull((SELECT max(id) FROM part), 0),
+                 ifnull((SELECT last FROM row_floor WHERE name = 'part'), 0)) + 1, ?1, ?2, ?3, ?4, ?5, nullif(?6, ''), ?7, ?8, ?9, ?10, ?11, ?12)
              ON CONFLICT (run_id, kind, seq) DO NOTHING RETURNING id",
         )
         .doing(DOING)?

@@ -106,8 +106,9 @@ pub(super) fn insert_alarm(tx: &Transaction<'_>, run: Option<i64>, it: &AlarmRec
     let cleared_after = it.cleared_at_us.is_none_or(|at| at >= it.raised_at_us);
     assert!(cleared_after, "{} went before it came", it.code);
     tx.prepare_cached(
-        "INSERT INTO alarm (run_id, code, line, text, raised_at_us, cleared_at_us, args)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)
+        "INSERT INTO alarm (id, run_id, code, line, text, raised_at_us, cleared_at_us, args)
+         VALUES (max(ifnull((SELECT max(id) FROM alarm), 0),
+             ifnull((SELECT last FROM row_floor WHERE name = 'alarm'), 0)) + 1, ?1, ?2, ?3, ?4, ?5, ?6, ?7)
          ON CONFLICT (raised_at_us, code, ifnull(line, ''), ifnull(run_id, 0))
          DO UPDATE SET cleared_at_us = ifnull(cleared_at_us, excluded.cleared_at_us)",
     )

@@ -10,6 +10,7 @@
 //! - Judging by another recipe writes nothing ([`rejudged`]). Only a run that was copied whole can be deleted
 //!   ([`Store::prune`]).
 //! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]).
+//! - A plan for tooling keeps its steps with the persons who did them ([`tooling`]).
 //! - A file belongs to one rig, real or simulated: its first run marks it ([`check_rig`]).
 //! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`,
 //!   `measurements`, `samples`, `curves` and `alarms` show local time and names instead of row numbers.
@@ -57,6 +58,7 @@ mod lots;
 mod moment;
 mod open;
 mod orders;
+pub mod outbox;
 mod owner;
 mod part;
 mod reasons;
@@ -69,6 +71,7 @@ mod scans;
 mod serials;
 mod series;
 mod store;
+pub mod tooling;
 mod values;
 mod views;
 mod wear;

@@ -20,7 +20,7 @@ use std::time::Duration;
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` migrates schema `n` to `n + 1`. Existing steps never change.
-pub(super) const MIGRATIONS: [&str; 13] = [
+pub(super) const MIGRATIONS: [&str; 15] = [
     include_str!("schema/v1.sql"),
     include_str!("schema/v2.sql"),
     include_str!("schema/v3.sql"),
@@ -34,6 +34,8 @@ pub(super) const MIGRATIONS: [&str; 13] = [
     include_str!("schema/v11.sql"),
     include_str!("schema/v12.sql"),
     include_str!("schema/v13.sql"),
+    include_str!("schema/v14.sql"),
+    include_str!("schema/v15.sql"),
 ];
 
 /// Schema that this program writes.

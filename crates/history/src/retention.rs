@@ -2,7 +2,8 @@
 //!
 //! - Backup and export call [`Store::record_export`] once their file is on the disk. Only closed runs count as copied.
 //! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves and alarms of copied runs that ended
-//!   before a given instant, one transaction per run. Lot, run, recipe and the note of the copy stay: run numbers
+//!   before a given instant, one transaction per run, and leaves runs of which a target of the
+//!   [outbox](super::outbox) still lacks rows. Lot, run, recipe and the note of the copy stay: run numbers
 //!   continue, and the note names the file that holds the parts.
 
 use super::error::{Doing, Result};
@@ -76,6 +77,11 @@ impl Store {
             "SELECT run.id, lot.name, run.number, export.parts, export.file
              FROM export JOIN run ON run.id = export.run_id JOIN lot ON lot.id = run.lot_id
              WHERE export.pruned_at_us IS NULL AND run.closed_at_us < ?1
+               AND NOT EXISTS (SELECT 1 FROM outbox WHERE kind = 'run' AND row_id = run.id)
+               AND NOT EXISTS (SELECT 1 FROM part JOIN outbox ON outbox.row_id = part.id
+                 WHERE part.run_id = run.id AND outbox.kind IN ('part', 'part_change'))
+               AND NOT EXISTS (SELECT 1 FROM alarm JOIN outbox ON outbox.row_id = alarm.id
+                 WHERE alarm.run_id = run.id AND outbox.kind IN ('alarm', 'alarm_state'))
              ORDER BY run.closed_at_us, run.id",
         )?;
         let rows = statement.query_map([closed_before_us], |row| {
@@ -103,7 +109,14 @@ pub(super) const EMPTYING: [&str; 8] = [
     "DELETE FROM alarm WHERE run_id = ?1",
 ];
 
+/// Notes the highest row numbers before rows go, so that no later row gets a number that a target of the outbox knows.
+const FLOOR: &str = "INSERT INTO row_floor (name, last)
+    SELECT name, last FROM (SELECT 'part' AS name, max(id) AS last FROM part
+      UNION ALL SELECT 'alarm', max(id) FROM alarm) WHERE last IS NOT NULL
+    ON CONFLICT (name) DO UPDATE SET last = max(last, excluded.last)";
+
 fn empty_run(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::Result<()> {
+    transaction.execute(FLOOR, [])?;
     for sql in EMPTYING {
         transaction.execute(sql, [run])?;
     }

@@ -66,12 +66,33 @@ pub struct View {
     pub alarms: Vec<AlarmLine>,
     /// Health of the lines and their modules, counted since the program started.
     pub lines: Vec<LineView>,
+    /// Health of the SCPI instruments, counted since the run began.
+    pub instruments: Vec<InstrumentView>,
     /// PackML state, buttons, mechanism, signals.
     pub machine: Machine,
     /// End of the last run of a lot; null before the first.
     pub last_run: Option<RunEnd>,
     /// Rights that the operating system grants to the program, and how late the computer wakes the cycle.
     pub host: HostView,
+    /// Databases that collect the histories of many rigs; empty without any.
+    pub fleet: Vec<FleetView>,
+}
+
+/// How a database of `fleet.toml` stands.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
+pub struct FleetView {
+    /// Database, without password.
+    pub url: String,
+    /// Parts that it lacks.
+    pub lag_parts: u64,
+    /// Seconds since the judgement of the oldest of them; 0 when it lacks none.
+    pub lag_s: f64,
+    /// True when it lacks a part for longer than `alarm_after_s` of `fleet.toml`.
+    pub late: bool,
+    /// Why the last attempt to send failed, with the remedy; null after one that succeeded.
+    pub last_error: Option<String>,
+    /// Parts sent since the program began.
+    pub sent_parts: u64,
 }
 
 /// Real-time rights of the program, and its lateness.
@@ -198,6 +219,27 @@ pub struct LineView {
     pub ports_lost: u64,
     /// Modules in order of address.
     pub modules: Vec<ModuleView>,
+}
+
+/// Health of an SCPI instrument, counted since the run began.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
+pub struct InstrumentView {
+    /// Name of the instrument in `rig.toml`.
+    pub name: String,
+    /// Name of the instrument's profile.
+    pub profile: String,
+    /// Address of its link.
+    pub link: String,
+    /// Its answer to `*IDN?`; null before the first answer.
+    pub identity: Option<String>,
+    /// Programs that have begun, safe programs included.
+    pub programs: u64,
+    /// Failed programs by the code of the failure.
+    pub failures: BTreeMap<String, u64>,
+    /// Median time from query to complete reply, ms; at most 19 % too high.
+    pub p50_ms: Option<f64>,
+    /// 99th percentile of that time, ms; at most 19 % too high.
+    pub p99_ms: Option<f64>,
 }
 
 /// Health of a module, counted since the program started.

@@ -3,6 +3,7 @@
 
 mod document;
 mod people;
+mod plans;
 
 use super::access::Role;
 use super::answers::Answer;
@@ -242,6 +243,7 @@ pub(super) fn routes() -> Vec<Route> {
     ];
     routes.extend(of_history());
     routes.extend(people::routes());
+    routes.extend(plans::routes());
     routes.extend(of_recipes());
     routes
 }

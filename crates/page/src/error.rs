@@ -76,6 +76,9 @@ pub(super) enum ApiError {
     /// 409: the person may not approve this revision; `code` says why.
     #[error("{}", refusal(.code).say(Lang::En))]
     NotApproved { code: &'static str },
+    /// 400, 404, 409 or 503: a plan for tooling, or a change of one, is refused.
+    #[error("{}", .why.say(Lang::En))]
+    Plan { status: StatusCode, why: Message },
     /// 500: a blocking task panicked or was cancelled.
     #[error("the reader of the history ended without an answer")]
     ReaderLost,
@@ -154,7 +157,7 @@ impl ApiError {
             Self::CrossSite { .. } | Self::NotAllowed { .. } => StatusCode::FORBIDDEN,
             Self::NotLoggedIn | Self::WrongPassword | Self::WrongCode => StatusCode::UNAUTHORIZED,
             Self::TooManyTries { .. } => StatusCode::TOO_MANY_REQUESTS,
-            Self::Body { status, .. } => *status,
+            Self::Body { status, .. } | Self::Plan { status, .. } => *status,
             Self::Unreadable(_) | Self::Query { .. } => StatusCode::BAD_REQUEST,
             Self::NotNow { .. } | Self::NotApproved { .. } => StatusCode::CONFLICT,
             Self::History(history) | Self::Inquiry(InquiryError::History(history)) => {
@@ -210,7 +213,7 @@ impl ApiError {
     pub fn message(&self) -> Message {
         let said = |code| refusal(code).with("said", self);
         match self {
-            Self::NotNow { why, .. } => why.clone(),
+            Self::NotNow { why, .. } | Self::Plan { why, .. } => why.clone(),
             Self::NotLoggedIn => refusal("not_logged_in"),
             Self::WrongPassword => refusal("wrong_password"),
             Self::WrongCode => refusal("wrong_code"),

@@ -2,8 +2,9 @@
 //!
 //! `api.rs` lists the routes and their members; `members.rs` has the parts of the query strings.
 //!
-//! `lang` is `zh` (when absent) or `en`. A route refuses a member that it does not use: 400 with the name. An unknown
-//! lot, run or part is 404. A few readers at a time work on blocking threads; they do not delay the writer.
+//! `lang` is `zh` or `en`; when absent, the header `Accept-Language` decides, and without it the language is English. A
+//! route answers 400 to a member that it does not use, with its name, and 404 to an unknown lot, run or part. A few
+//! readers at a time work on blocking threads; they do not delay the writer.
 
 pub(super) mod compared;
 pub(super) mod export;

@@ -20,6 +20,7 @@
 //! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
 //! | `GET /api/recipes...`, `POST /api/recipes/revise\|approve` | recipes and their revisions (`recipes.rs`, `approval.rs`) |
 //! | `GET /api/lots`, `GET /api/wear` | lots with the orders that their states allow; wear counters (`lots.rs`) |
+//! | `GET /api/plans/...`, `POST /api/plans/preview\|start\|tick\|abandon` | plans for tooling, ticked off (`plans.rs`) |
 //! | `GET /api/calibration` | factors with date, uncertainty and due date; reference parts with their last readings |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
 //! | `GET /api/trace` | the last traffic of every line, with its meaning |
@@ -47,6 +48,7 @@ mod error;
 mod events;
 mod gauge;
 mod history;
+mod language;
 mod login;
 mod lots;
 mod metrics;
@@ -55,6 +57,7 @@ mod orders;
 mod origin;
 mod page;
 mod people;
+mod plans;
 mod prompt;
 mod recipes;
 mod router;
@@ -66,6 +69,7 @@ pub use approval::approve_with_password;
 use config::Folder;
 use machine::view::{Mimic, OrderRequest};
 pub use orders::WAITING;
+pub use plans::{ListedScene, PlanAnswer, PlanFault, PlanMaker, PlanQuestion};
 pub use server::{ListenError, Listener, Tls, serve};
 pub use sessions::Sessions;
 pub use trace::Traffic;
@@ -93,6 +97,8 @@ pub struct Shared {
     pub sessions: Sessions,
     /// The last traffic of the lines.
     pub traffic: Traffic,
+    /// Makes plans for tooling.
+    pub plans: Arc<dyn PlanMaker>,
     /// Queue to the cycle, which answers each order in its next turn.
     pub orders: mpsc::Sender<OrderRequest>,
 }

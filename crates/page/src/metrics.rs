@@ -7,7 +7,7 @@ use super::router::App;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
-use machine::view::{LatenessView, ModuleView, View};
+use machine::view::{FleetView, LatenessView, ModuleView, View};
 use prometheus_client::collector::Collector;
 use prometheus_client::encoding::text::encode_registry;
 use prometheus_client::encoding::{DescriptorEncoder, EncodeGaugeValue, NoLabelSet};
@@ -59,6 +59,8 @@ impl Collector for Scrape {
         let lost = lines.map(|line| ([("line", line.name.as_str())], line.ports_lost));
         let help = "Transactions that found no port.";
         out.known("relayrig_line_ports_lost", help, lost)?;
+        instruments(&mut out, &self.view)?;
+        fleet(&mut out, &self.view)?;
         out.lateness(&self.view.host.lateness)
     }
 }
@@ -79,6 +81,39 @@ impl Scrape {
         out.one("relayrig_simulated", help, simulated)?;
         out.one("relayrig_screens", "Open streams of events.", self.streams)
     }
+}
+
+fn instruments(out: &mut Figures<'_>, view: &View) -> fmt::Result {
+    let each = view.instruments.iter();
+    let programs = each.map(|it| ([("instrument", it.name.as_str())], it.programs));
+    let help = "Programs of an instrument.";
+    out.known("relayrig_instrument_programs", help, programs)?;
+    let failures = view.instruments.iter().flat_map(|it| {
+        let kinds = it.failures.iter();
+        kinds.map(|(kind, n)| ([("instrument", it.name.as_str()), ("kind", kind)], *n))
+    });
+    let help = "Failed programs of an instrument, by kind.";
+    out.known("relayrig_instrument_failures", help, failures)
+}
+
+/// Writes what each database of `fleet.toml` lacks.
+fn fleet(out: &mut Figures<'_>, view: &View) -> fmt::Result {
+    fn of(it: &FleetView) -> [Label<'_>; 1] {
+        [("target", it.url.as_str())]
+    }
+    let each = || view.fleet.iter();
+    let help = "Parts that a database of the fleet lacks.";
+    let lag = each().map(|it| (of(it), it.lag_parts));
+    out.each("relayrig_fleet_lag_parts", help, lag)?;
+    let help = "Age of the oldest part that a database of the fleet lacks.";
+    let lag = each().map(|it| (of(it), it.lag_s));
+    out.each("relayrig_fleet_lag_seconds", help, lag)?;
+    let help = "1 when that age is past alarm_after_s.";
+    let late = each().map(|it| (of(it), u64::from(it.late)));
+    out.each("relayrig_fleet_late", help, late)?;
+    let help = "1 when the last attempt to send to a database of the fleet failed.";
+    let failed = each().map(|it| (of(it), u64::from(it.last_error.is_some())));
+    out.each("relayrig_fleet_failing", help, failed)
 }
 
 fn parts(out: &mut Figures<'_>, view: &View) -> fmt::Result {
@@ -250,7 +285,7 @@ impl Figures<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use machine::view::Bucket;
+    use machine::view::{Bucket, InstrumentView};
 
     #[test]
     fn figures_have_a_type_and_unknown_ones_are_absent() {
@@ -294,6 +329,31 @@ mod tests {
             "_bucket{le=\"+Inf\"} 10",
         ] {
             assert!(text.contains(&format!("{name}{row}\n")), "{row}: {text}");
+        }
+    }
+
+    #[test]
+    fn an_instrument_has_programs_and_failures_by_kind() {
+        let meter = InstrumentView {
+            name: "meter".into(),
+            programs: 12,
+            failures: [("timeout".to_owned(), 2)].into(),
+            ..InstrumentView::default()
+        };
+        let view = View {
+            instruments: vec![meter],
+            ..View::default()
+        };
+        let text = text(Scrape {
+            view,
+            alive: true,
+            streams: 0,
+        });
+        for row in [
+            "relayrig_instrument_programs{instrument=\"meter\"} 12\n",
+            "relayrig_instrument_failures{instrument=\"meter\",kind=\"timeout\"} 2\n",
+        ] {
+            assert!(text.contains(row), "{row}: {text}");
         }
     }
 

@@ -8,8 +8,8 @@ use super::access::{Person, Role, audited};
 use super::approval::ApprovalState;
 use super::asked::{Asked, Author, Body, members};
 use super::error::{ApiError, JsonResult, blocking};
-use super::history::members::language;
 use super::history::paper::{Page, with_policy};
+use super::language::Preferred;
 use super::router::App;
 use super::sessions;
 use axum::Json;
@@ -130,7 +130,7 @@ pub(super) struct CardQuery {
     /// Name of the recipe.
     #[param(example = "jzc-22f-012")]
     name: String,
-    /// Language, `zh` (when absent) or `en`.
+    /// Language, `zh` or `en`; when absent, that of `Accept-Language`, without it English.
     #[param(inline)]
     lang: Option<Lang>,
 }
@@ -140,12 +140,13 @@ members!(RevisionQuery, CardQuery);
 /// `GET /api/recipes/card`.
 pub(super) async fn card(
     State(app): App,
+    preferred: Preferred,
     Asked(CardQuery { name, lang }): Asked<CardQuery>,
 ) -> Result<Page, ApiError> {
     let folder = app.shared.config.clone();
     let made = move || {
         let recipe = config::load_recipe(&folder, &name)?;
-        let paper = paper(language(lang));
+        let paper = paper(preferred.unless(lang));
         let plant = config::load_card(&folder)?;
         let card = card::card(&paper, &recipe, &plant);
         Ok::<_, ApiError>(with_policy(card))

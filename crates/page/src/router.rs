@@ -12,7 +12,7 @@ use axum::middleware::{Next, from_fn};
 use axum::response::Response;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use tokio::sync::watch;
+use tokio::sync::{Semaphore, watch};
 
 /// State that every route may use.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ pub(super) struct AppState {
     /// The last view as an event; see [`events::publish`].
     pub events: watch::Receiver<Bytes>,
     pub readers: Readers,
+    /// Semaphore with one permit: the server makes one plan at a time.
+    pub planning: Arc<Semaphore>,
 }
 
 /// Extractor by which a route receives [`AppState`].
@@ -39,6 +41,7 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         ended,
         streams: Arc::default(),
         events,
+        planning: Arc::new(Semaphore::new(1)),
     };
     let (view, streams) = (app.shared.view.clone(), Arc::clone(&app.streams));
     tokio::spawn(events::publish(view, publisher, streams));

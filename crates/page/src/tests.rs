@@ -15,6 +15,7 @@ mod lots;
 mod mimic;
 mod orders;
 mod people;
+mod plans;
 mod recipes;
 mod rejudge;
 mod routes;
@@ -94,6 +95,7 @@ impl Fixture {
             mimic: Arc::new(some_mimic()),
             view: looking,
             traffic: some_traffic(),
+            plans: Arc::new(plans::OneStep),
             db: db.clone(),
             config,
             orders: orders.clone(),
@@ -133,6 +135,12 @@ impl Fixture {
     async fn get(&self, path: &str) -> Answer {
         self.ask(Request::get(path).body(Body::empty()).unwrap())
             .await
+    }
+
+    /// Sends a GET request with this `Accept-Language` header.
+    async fn get_in(&self, languages: &str, path: &str) -> Answer {
+        let request = Request::get(path).header("accept-language", languages);
+        self.ask(request.body(Body::empty()).unwrap()).await
     }
 
     async fn order(&self, body: impl Into<Body>) -> Answer {

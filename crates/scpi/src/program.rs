@@ -8,7 +8,7 @@ use units::Span;
 pub enum Step {
     /// A command, which has no reply.
     Send(String),
-    /// A query. The link may repeat it, so a query must not take away something that its repetition would miss.
+    /// A query. The link may repeat it, so it must not remove from the instrument what a repetition would ask for.
     Ask {
         /// Text of the query; one query, without `;`.
         command: String,
@@ -47,6 +47,17 @@ pub struct Program {
 }
 
 impl Program {
+    /// Returns the number of its values.
+    pub fn values(&self) -> usize {
+        let is_value = |step: &&Step| matches!(step, Step::Ask { expect: None, .. });
+        self.steps.iter().filter(is_value).count()
+    }
+
+    /// Appends the steps of another program, so that one proof ends both.
+    pub fn append(&mut self, mut other: Self) {
+        self.steps.append(&mut other.steps);
+    }
+
     /// Returns the longest time of its steps: `usual` is the default time of a message, and each query may be asked
     /// twice.
     pub(crate) fn longest(&self, usual: Span) -> Span {

@@ -12,19 +12,27 @@ use super::lot::{Lot, Part};
 use super::order::Order;
 use super::output::Report;
 use super::path;
+use machine::dut::recipe::DeviceRecipe;
+use machine::dut::ssr::recipe::Output;
 use quality::Spread;
 use quality::spread::median;
 
 /// Greatest permitted time of the longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
+/// The same of a solid-state relay, for a DC and for an AC load; references and searches without expectation, which the
+/// first parts of a lot take, and repetitions come on top.
+const DC_TEST_S: f64 = 1.0;
+const AC_TEST_S: f64 = 1.5;
 /// Number of parts from which the overshoot model ([`machine::dut::em_relay::overshoot`]) starts the fine ramps close
 /// to the threshold. The model has six terms, and the reference parts lie far apart: after fewer parts its uncertainty
 /// makes the ramps longer.
 const LEARNING_PARTS: usize = 6;
 /// Greatest permitted time of the longest test of any part, seconds of rig time: a defect may need another ramp.
 const ANY_TEST_S: f64 = 1.0;
-/// Greatest permitted mean test time under a recipe that measures adaptively, seconds of rig time.
-const ADAPTIVE_MEAN_S: f64 = 0.60;
+/// Greatest permitted mean test time, seconds of rig time.
+const MEAN_S: f64 = 0.70;
+/// The same under a recipe that measures adaptively.
+const ADAPTIVE_MEAN_S: f64 = 0.50;
 /// Greatest permitted ratio of the mean test time to the lower bound of [`bound`].
 const RATIO: f64 = 1.15;
 /// Greatest permitted cycle with overlapping motions, seconds of rig time.
@@ -44,24 +52,38 @@ const PIECES: [(&str, &str); 4] = [
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let adaptive = order.recipe.name.ends_with("-adaptive");
-    let mean_bar = if adaptive { ADAPTIVE_MEAN_S } else { TEST_S };
+    let (test_s, mean_s) = allowed_s(order);
+    let mean_bar = if adaptive { ADAPTIVE_MEAN_S } else { mean_s };
     let (pieces, about) = (pieces(&lots), order.about());
     let title = format!("where a cycle goes, mean per part: {about}");
     let chart = Chart::of(title, "s", Vec::new(), &pieces);
     let groups = vec![
-        times(&lots),
+        times(&lots, test_s),
         bound(&lots, mean_bar),
         path::path(order, &lots)?,
         pieces,
         bins::machine(&lots),
     ];
-    let notes = exception::slow(&lots, TEST_S, CYCLE_S);
+    let notes = exception::slow(&lots, test_s, CYCLE_S);
     Ok(Report::new("cycle", about, groups, chart).noted(notes))
+}
+
+/// Returns the greatest permitted times of the longest and of the mean test, seconds of rig time.
+fn allowed_s(order: &Order) -> (f64, f64) {
+    match &order.recipe.device {
+        DeviceRecipe::Ssr(ssr) => match ssr.part.output {
+            Output::Dc => (DC_TEST_S, DC_TEST_S),
+            Output::AcZeroCross | Output::AcRandom => (AC_TEST_S, AC_TEST_S),
+        },
+        DeviceRecipe::EmRelay(_) | DeviceRecipe::Resistor(_) | DeviceRecipe::Thermostat(_) => {
+            (TEST_S, MEAN_S)
+        }
+    }
 }
 
 /// Returns longest, mean and median time of tests and of cycles; for good parts also those of the first
 /// [`LEARNING_PARTS`] parts of a lot and of all later parts.
-pub fn times(lots: &[Lot]) -> Vec<Figure> {
+pub fn times(lots: &[Lot], test_s: f64) -> Vec<Figure> {
     let good = |from: usize, to: usize| -> Vec<f64> {
         let of = move |lot| Lot::good(lot).skip(from).take(to - from);
         lots.iter()
@@ -82,16 +104,16 @@ pub fn times(lots: &[Lot]) -> Vec<Figure> {
         .collect();
     let first = format!("  of the first {LEARNING_PARTS} of a lot, which teach");
     vec![
-        longest("test, longest of good parts", TEST_S, &good(0, usize::MAX)),
-        longest(first, TEST_S, &good(0, LEARNING_PARTS)),
+        longest("test, longest of good parts", test_s, &good(0, usize::MAX)),
+        longest(first, test_s, &good(0, LEARNING_PARTS)),
         longest(
             "  of those after them",
-            TEST_S,
+            test_s,
             &good(LEARNING_PARTS, usize::MAX),
         ),
         longest(
             "test, longest of all parts",
-            ANY_TEST_S,
+            ANY_TEST_S + test_s - TEST_S,
             &any(|it| it.test_s),
         ),
         longest("cycle, longest of good parts", CYCLE_S, &cycles),

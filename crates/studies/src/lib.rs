@@ -10,10 +10,12 @@
 //!   of its own counts such parts.
 //! - A figure without a value (nothing measured, nothing reported) misses its bar.
 //! - No figure mixes rig time (time of the simulated rig) and wall time: wall time appears only in `collision`,
-//!   `history`, `pace`, `storm` and `transient`.
+//!   `history`, `pace`, `plan`, `storm` and `transient`.
 //!
-//! `collision` and `transient` run no lot: `collision` compares ways to check a move with the exact truth, `transient`
-//! integrates the relay model of the simulated rig.
+//! `chamber`, `collision`, `plan`, `ssr`, `thermostat` and `transient` run no lot of the rig. `chamber` and `thermostat`
+//! run the arithmetic of the controller on the simulated chamber, `ssr` on a model of its signals. `collision` compares
+//! ways to check a move with the exact truth, `plan` compares orders of tooling with brute force, `transient` integrates
+//! the relay model of the simulated rig.
 //!
 //! [`figures`] runs a plan of studies and benchmarks and writes their figures as one document.
 //!
@@ -27,6 +29,8 @@ mod chart;
 mod coil;
 mod collision;
 mod contact;
+mod controllers;
+mod curves;
 mod cycle;
 mod decision;
 mod dice;
@@ -47,14 +51,17 @@ mod output;
 mod pace;
 mod parameters;
 mod path;
+mod plan;
 mod pool;
 mod promises;
 mod risk;
 mod scatter;
+mod ssr;
 mod stop;
 mod storm;
 #[cfg(test)]
 mod tests;
+mod thermostat;
 mod threshold;
 mod timing;
 mod transient;
@@ -64,10 +71,14 @@ mod verification;
 use anyhow::bail;
 use clap::ValueEnum;
 pub use collision::study as collision;
+pub use controllers::study as controllers;
 pub use figure::Bar;
 pub use gantt::svg as cycle_gantt;
 pub use order::Order;
 pub use output::Report;
+pub use plan::{SCENES as PLAN_SCENES, study as plan};
+pub use ssr::{PARTS as SSR_PARTS, study as ssr};
+pub use thermostat::study as thermostat;
 pub use transient::{USUAL_RTOL, study as transient};
 
 /// The studies, in the order of the list that `relayrig study` prints.
@@ -75,6 +86,8 @@ pub use transient::{USUAL_RTOL, study as transient};
 pub enum Study {
     /// Error of every parameter against the truth, and bins of the parts
     Accuracy,
+    /// Controllers of a test chamber: tracking, overshoot, settling, open door, weak and strong heater
+    Chamber,
     /// Measuring time against error of the coil resistance: settling, scans, self-heating, temperature
     Coil,
     /// Ways to check a move: time against error and wrong verdicts
@@ -91,8 +104,12 @@ pub enum Study {
     History,
     /// False accepts and rejects, counted and as the decision rule predicts them
     Decision,
+    /// Seconds against error of the methods for solid-state relays
+    Ssr,
     /// The emergency stop at every instant of a cycle and of homing, and how long outputs stay on
     Stop,
+    /// Switching temperatures of parts in a chamber: error, coverage, minutes and parts per hour
+    Thermostat,
     /// Seconds against error of every strategy for the thresholds
     Threshold,
     /// Lots killed at random instants: rows lost, rows twice, damage
@@ -101,6 +118,8 @@ pub enum Study {
     Life,
     /// Parts per second of wall time, and whether the same seed gives the same bytes
     Pace,
+    /// Plans for tooling: false blocks of boxes, orders against brute force, growth
+    Plan,
     /// Good parts rejected, defects by bin, over many lots
     Sorting,
     /// Whether a rig that breaks a promise of its files is noticed, or its results still covered; false alarms
@@ -121,7 +140,9 @@ impl Study {
         Some(match self {
             Self::Accuracy => (10, 500),
             Self::Coil | Self::Contact | Self::Threshold | Self::Timing => (4, 40),
-            Self::Collision | Self::Transient => return None,
+            Self::Chamber | Self::Collision | Self::Plan | Self::Ssr | Self::Transient => {
+                return None;
+            }
             Self::Coverage => (100, 10),
             Self::Cycle => (1, 100),
             Self::Decision => (20, 500),
@@ -134,6 +155,7 @@ impl Study {
             Self::Sorting => (100, 110),
             Self::Storm => (200, 4),
             Self::Stop => (16, 25),
+            Self::Thermostat => (20, 40),
             Self::Verification => (20, 10),
         })
     }
@@ -162,8 +184,15 @@ impl Study {
             Self::Threshold => threshold::study(order),
             Self::Timing => timing::study(order),
             Self::Verification => verification::study(order),
-            Self::Collision | Self::Transient => {
-                bail!("the studies collision and transient run no lot")
+            Self::Chamber
+            | Self::Collision
+            | Self::Plan
+            | Self::Ssr
+            | Self::Thermostat
+            | Self::Transient => {
+                bail!(
+                    "the studies chamber, collision, plan, ssr, thermostat and transient run no lot"
+                )
             }
         }
     }

@@ -22,8 +22,9 @@ pub struct Part {
     /// Reasons for a verdict other than `pass`.
     #[serde(default)]
     pub reasons: Vec<String>,
+    /// Values by key; those that are no number say whether a part conforms.
     #[serde(default)]
-    values: BTreeMap<String, Option<f64>>,
+    values: BTreeMap<String, Value>,
     #[serde(default)]
     uncertainty: BTreeMap<String, Option<f64>>,
     /// Rig time from raised probes to the verdict, seconds.
@@ -113,7 +114,7 @@ impl Part {
         let characteristic = characteristic.into();
         let key = characteristic.key();
         Some(Reading {
-            value: self.values.get(key).copied().flatten()?,
+            value: self.values.get(key)?.as_f64()?,
             uncertainty: self.uncertainty.get(key).copied().flatten(),
             truth: self.truth.as_ref()?.value(characteristic)?,
         })

@@ -48,7 +48,7 @@ impl Report {
         self.figures().all(|figure| figure.met() != Some(false))
     }
 
-    fn figures(&self) -> impl Iterator<Item = &Figure> {
+    pub(crate) fn figures(&self) -> impl Iterator<Item = &Figure> {
         self.groups.iter().flatten()
     }
 

@@ -1,7 +1,7 @@
 //! The critical path of a cycle, and how close the line comes to it.
 //!
 //! The nest is never idle between one nest exit and the next: the pusher pushes the next part in, the jaws clamp it
-//! while the pusher returns, the probes rise, the test runs, the fingers grip while the probes go down, the jaws open
+//! and the probes rise while the pusher returns, the test runs, the fingers grip while the probes go down, the jaws open
 //! and z lifts the part. Each of these strokes waits for the previous one; all others (escapement, the way to the bin
 //! and back, z down) overlap with them. No overlap can make a cycle shorter than the sum of the mean travel times of
 //! the path and the mean test.
@@ -10,22 +10,21 @@ use super::figure::{self, Bar, Figure};
 use super::lot::{Lot, Part};
 use super::order::Order;
 use rigsim::config::read_world;
-use rigsim::world::table::MechanismTable;
+use rigsim::world::table::{MechanismTable, present};
 
 /// Least number of parts per hour with the default recipe.
-const PARTS_PER_HOUR: f64 = 1850.0;
+const PARTS_PER_HOUR: f64 = 2100.0;
 /// The line must make at least this share of the parts per hour that the critical path permits.
 const SHARE: f64 = 0.95;
 
 /// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes it takes the longer time.
-fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
+fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 5] {
     [
         ("path: pusher to the nest", mechanism.pusher_ms),
         (
-            "path: pusher back, jaws beside it",
-            mechanism.pusher_ms.max(mechanism.clamp_ms),
+            "path: jaws closed, then probes up",
+            mechanism.clamp_ms + mechanism.probe_lift_ms,
         ),
-        ("path: probes up", mechanism.probe_lift_ms),
         (
             "path: probes down, fingers beside them",
             mechanism.probe_lift_ms.max(mechanism.gripper_ms),
@@ -40,8 +39,9 @@ fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
 /// # Errors
 /// Fails when the world file cannot be read.
 pub fn path(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
-    let world = read_world(&order.config.as_path().into(), order.world.as_deref())?;
-    let strokes = strokes(&world.mechanism);
+    let files = order.config.as_path().into();
+    let world = read_world(&files, order.world.as_deref())?;
+    let strokes = strokes(&present(&world.mechanism, "mechanism", &files)?);
     let parts: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
     let mean = |of: fn(&Part) -> Option<f64>| {
         let whole = parts.iter().filter(|part| part.cycle_s.is_some());

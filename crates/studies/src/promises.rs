@@ -129,7 +129,7 @@ fn closures(order: &Order) -> Option<(&'static str, &'static str, f64)> {
             let promised_pct = f64::from(relay.test.strategy.contact.closure_scatter_pct);
             Some((CLOSURES.0, CLOSURES.1, FACTOR * promised_pct / 100.0))
         }
-        DeviceRecipe::Resistor(_) | DeviceRecipe::Ssr(_) => None,
+        DeviceRecipe::Resistor(_) | DeviceRecipe::Ssr(_) | DeviceRecipe::Thermostat(_) => None,
     }
 }
 

@@ -160,7 +160,7 @@ fn play_lot(
 /// Returns the bit mask of the motion outputs of each module, by the name of the module.
 fn moving(wiring: &Wiring) -> BTreeMap<String, u16> {
     let mut bits = BTreeMap::new();
-    for point in DigitalOut::ALL.iter().filter(|point| point.moves()) {
+    for point in DigitalOut::OF_FEEDER.iter().filter(|point| point.moves()) {
         let terminal = wiring.digital_out(*point);
         *bits
             .entry(wiring.module(terminal.module).name.clone())

@@ -123,7 +123,7 @@ impl Damage {
             let noise: Vec<u8> = (0..count).map(|_| rng.random()).collect();
             reply.splice(0..0, noise);
         }
-        if self.echo.occurs(rng, now_us) {
+        if self.echo.occurs(rng, now_us) && !request.is_empty() {
             reply.splice(0..0, request.iter().copied().chain([dcon::CR]));
         }
     }

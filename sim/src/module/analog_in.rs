@@ -162,7 +162,7 @@ impl AnalogIn {
             return;
         };
         let reading = if terminal.is_nan() {
-            self.open_input()
+            self.open_input(channel)
         } else {
             self.digitise(range, base.format, terminal)
         };
@@ -173,11 +173,13 @@ impl AnalogIn {
         self.kind.range(self.ranges[usize::from(channel)])
     }
 
-    /// Returns the reading of an open input: over range at a sensor input, zero at a voltage input.
-    fn open_input(&self) -> f64 {
-        match self.kind {
-            Kind::Rtd => f64::INFINITY,
-            Kind::Voltage { .. } | Kind::Thermocouple => 0.0,
+    /// Returns the reading of an open input: over range at a temperature input, zero at a voltage input.
+    fn open_input(&self, channel: u8) -> f64 {
+        let is_thermocouple = range::is_thermocouple(self.ranges[usize::from(channel)]);
+        if self.kind == Kind::Rtd || is_thermocouple {
+            f64::INFINITY
+        } else {
+            0.0
         }
     }
 

@@ -145,11 +145,16 @@ impl AnalogOut {
         value * (1.0 + self.tolerances.ao_gain) + self.tolerances.ao_offset_v
     }
 
-    /// Drives the terminals; only channel 0 has a wire to the plant.
+    /// Drives the terminals of a channel.
     fn drive(&self, base: &ModuleBase, channel: usize, at: &mut Terminals<'_>) {
-        if channel == 0 {
-            let value = self.carried(self.span(base, 0), self.channels[0].ramp.present());
-            at.plant.analog_out(at.module, value);
+        let present = self.channels[channel].ramp.present();
+        let value = self.carried(self.span(base, channel), present);
+        at.plant.analog_out(at.module, channel as u8, value);
+    }
+
+    fn drive_all(&self, base: &ModuleBase, at: &mut Terminals<'_>) {
+        for channel in 0..self.channels.len() {
+            self.drive(base, channel, at);
         }
     }
 
@@ -336,7 +341,7 @@ impl Family for AnalogOut {
         for channel in &mut self.channels {
             channel.ramp.jump(channel.safe);
         }
-        self.drive(base, 0, at);
+        self.drive_all(base, at);
     }
 
     fn restart(&mut self, base: &ModuleBase) {
@@ -352,6 +357,6 @@ impl Family for AnalogOut {
     }
 
     fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
-        self.drive(base, 0, at);
+        self.drive_all(base, at);
     }
 }

@@ -19,6 +19,8 @@ pub struct Range {
     pub per_terminal: f64,
     /// True when the range shows over-range text instead of saturating.
     pub shows_over: bool,
+    /// True when hexadecimal codes have no sign.
+    pub unipolar: bool,
 }
 
 /// Data format, the low two bits of FF.
@@ -87,9 +89,10 @@ impl Range {
         };
     }
 
-    /// Returns the hexadecimal code: 8000 to 7FFF, or 0000 to FFFF for a range without a negative side.
+    /// Returns the hexadecimal code: 8000 to 7FFF, or 0000 to FFFF for a current range without a negative side. A
+    /// temperature range without a negative side begins at 0000, with 8000 for under range and 7FFF for over range.
     pub fn code(&self, fraction: f64) -> u16 {
-        if self.lowest >= 0.0 {
+        if self.unipolar {
             return (fraction.clamp(0.0, 1.0) * 65_535.0).round() as u16;
         }
         let code = (fraction.clamp(-1.0, 1.0) * 32_768.0).round();
@@ -124,6 +127,7 @@ pub fn voltage_range(type_code: u8) -> Option<Range> {
         decimals,
         per_terminal,
         shows_over: false,
+        unipolar: false,
     })
 }
 
@@ -140,7 +144,13 @@ fn current_range(type_code: u8) -> Option<Range> {
         decimals: 3,
         per_terminal: 1.0,
         shows_over: true,
+        unipolar: lowest >= 0.0,
     })
+}
+
+/// Checks whether a type code of a 7018 is for a thermocouple.
+pub fn is_thermocouple(type_code: u8) -> bool {
+    thermocouple_range(type_code).is_some()
 }
 
 fn thermocouple_range(type_code: u8) -> Option<Range> {
@@ -164,6 +174,7 @@ fn thermocouple_range(type_code: u8) -> Option<Range> {
         decimals: 1,
         per_terminal: 1.0,
         shows_over: true,
+        unipolar: false,
     })
 }
 
@@ -182,6 +193,7 @@ pub fn rtd_range(type_code: u8) -> Option<Range> {
         decimals: 2,
         per_terminal: 1.0,
         shows_over: true,
+        unipolar: false,
     })
 }
 

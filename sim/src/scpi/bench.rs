@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::circuit::Circuit;
 use super::device::Device;
 use super::file::Link;
+use super::instrument::Moment;
 use super::port::{Out, Port};
 use crate::error::SimError;
 use crate::fault::instrument::InstrumentFaults;
@@ -25,9 +26,21 @@ impl Instruments {
             .min()
     }
 
-    /// Lets an instrument act at `now_us`, to which the circuit has advanced.
-    pub fn act(&mut self, number: usize, now_us: u64, circuit: &mut dyn Circuit) {
-        self.devices[number].tick(now_us, circuit, &mut self.faults);
+    /// Lets an instrument act at `now_us`, up to which the circuit has advanced, and go on until another instrument
+    /// acts or `end_us` comes. Advances the circuit to the instant of its last act, and returns that instant.
+    pub fn act(
+        &mut self,
+        number: usize,
+        now_us: u64,
+        end_us: u64,
+        circuit: &mut dyn Circuit,
+    ) -> u64 {
+        let (before, rest) = self.devices.split_at(number);
+        let others = before.iter().chain(&rest[1..]);
+        let alone_us = others.filter_map(Device::next_us).fold(end_us, u64::min);
+        let at = &mut Moment { now_us, circuit };
+        self.devices[number].tick(at, alone_us, &mut self.faults);
+        at.now_us
     }
 
     /// Checks that every instrument or adapter that a fault names exists.
@@ -132,8 +145,9 @@ impl Bench {
         while let Some((at_us, number)) = self.instruments.next().filter(|it| it.0 <= to_us) {
             self.now_us = self.now_us.max(at_us);
             self.circuit.advance(self.now_us);
-            self.instruments
-                .act(number, self.now_us, self.circuit.as_mut());
+            self.now_us = self
+                .instruments
+                .act(number, self.now_us, to_us, self.circuit.as_mut());
         }
         self.now_us = self.now_us.max(to_us);
         self.circuit.advance(self.now_us);

@@ -15,6 +15,8 @@ pub enum Terminal {
     Line,
     /// Load current; a digitizer sees it as a voltage over a shunt.
     Load,
+    /// Load current, as the voltage over the present shunt of the load circuit.
+    Shunt,
     /// Voltage over the output at the socket of the part, apart from the wires of an instrument.
     Socket,
     /// Voltage over the output, clamped to +-10 V.
@@ -27,6 +29,7 @@ read_words!(Terminal {
     "output" => Self::Output,
     "line" => Self::Line,
     "load" => Self::Load,
+    "shunt" => Self::Shunt,
     "socket" => Self::Socket,
     "clamped" => Self::Clamped,
 });
@@ -61,7 +64,7 @@ pub enum Drive {
         /// Phase at the instant when this drive begins, degrees; `None` continues the present phase.
         phase_deg: Option<f64>,
     },
-    /// Rectangular pulses, which begin at the instant of this drive.
+    /// Rectangular pulses, which begin with this drive.
     Pulses(Pulses),
 }
 
@@ -76,6 +79,8 @@ pub struct Pulses {
     pub period_us: f64,
     /// Time at the high level, microseconds.
     pub width_us: f64,
+    /// Time from the begin of this drive to the first rising edge, microseconds.
+    pub delay_us: f64,
     /// Number of pulses; `None` for an endless train.
     pub count: Option<u64>,
     /// Resistance in series with the source, ohms.
@@ -83,7 +88,7 @@ pub struct Pulses {
 }
 
 impl Pulses {
-    /// Returns the volts `since_us` after the start, without load.
+    /// Returns the volts `since_us` after the first rising edge, without load.
     pub fn volts(&self, since_us: f64) -> f64 {
         match self.edge_us(since_us) {
             Some((_, true)) => self.high_v,

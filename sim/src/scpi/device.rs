@@ -2,7 +2,6 @@
 
 use std::collections::VecDeque;
 
-use super::circuit::Circuit;
 use super::instrument::{Instrument, Moment, Outcome};
 use super::message::{Unit, units};
 use super::status::{Failure, OPC, Status};
@@ -101,12 +100,19 @@ impl Device {
             return self.cycle_us;
         }
         let job = self.instrument.next_us();
+        [job, self.beside_us(job)].into_iter().flatten().min()
+    }
+
+    /// Returns the next instant at which something other than the job happens; `job` is the instant of the job's next
+    /// step.
+    fn beside_us(&self, job: Option<u64>) -> Option<u64> {
         let unit = match (&self.waiting, self.messages.front()) {
             (Some(_), _) => job.is_none().then_some(self.free_us),
             (None, Some(message)) => Some(self.free_us.max(message.at_us)),
             (None, None) => (self.complete && job.is_none()).then_some(self.free_us),
         };
-        [job, unit].into_iter().flatten().min()
+        let watch = self.instrument.watch_us();
+        [unit, watch].into_iter().flatten().min()
     }
 
     /// Returns an instant before which no further reply leaves; `None` when no message or query is pending.
@@ -121,20 +127,25 @@ impl Device {
         }
     }
 
-    /// Carries out what is due at `t_us`: a power cycle, a step of the measurement, or the next unit of a message.
-    pub fn tick(&mut self, t_us: u64, circuit: &mut dyn Circuit, faults: &mut InstrumentFaults) {
-        let at = &mut Moment {
-            now_us: t_us,
-            circuit,
-        };
+    /// Carries out what is due at `at`: a power cycle, steps of the measurement, or the next unit of a message. No
+    /// other instrument acts before `end_us`. Leaves `at` at the last instant that it has carried out.
+    pub fn tick(&mut self, at: &mut Moment<'_>, end_us: u64, faults: &mut InstrumentFaults) {
+        let t_us = at.now_us;
         if self.cycle_us.take().is_some() {
             self.status = Status::new(DEPTH);
             self.local = false;
             self.free_us = t_us + self.instrument.reset(at);
             return;
         }
-        if self.instrument.next_us().is_some_and(|next| next <= t_us) {
-            self.instrument.tick(at);
+        if self.instrument.watch_us().is_some_and(|next| next <= t_us) {
+            let failure = self.instrument.watch(at);
+            failure.into_iter().for_each(|it| self.status.push(it));
+            return;
+        }
+        let job = self.instrument.next_us();
+        if job.is_some_and(|next| next <= t_us) {
+            let alone_us = self.beside_us(job).unwrap_or(u64::MAX);
+            self.instrument.run(at, end_us.min(alone_us));
             return;
         }
         if self.complete && self.instrument.next_us().is_none() {

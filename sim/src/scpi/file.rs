@@ -9,7 +9,7 @@ use super::bench::{Bench, Instruments, SharedBench};
 use super::circuit::Circuit;
 use super::device::Device;
 use super::instrument::{self, Channel, Fitting, Model};
-use super::line::Line;
+use super::line::{Line, Unrest};
 use super::passive::Passive;
 use super::port::{Behind, Port};
 use super::relay::{Defect, Kind, SolidState, Truth};
@@ -187,7 +187,11 @@ fn circuit(keys: Option<Table>, seed: u64) -> Result<Box<dyn Circuit>, ConfigErr
     };
     let kind = keys.get_or("kind", Kind::Passive)?;
     let ohms = |key| Ok(setting::number(&keys, key, 0.0..=f64::INFINITY)?.unwrap_or(1e3));
-    let line = Line::new(seed, keys.get_or("distorted", true)?);
+    let unrest = match keys.get_or("distorted", true)? {
+        true => Unrest::USUAL,
+        false => Unrest::NONE,
+    };
+    let line = Line::new(seed, unrest);
     let load_ohm = setting::number(&keys, "load_ohm", LOAD_OHM)?.unwrap_or(2_300.0);
     let circuit: Box<dyn Circuit> = match kind {
         Kind::Passive => {

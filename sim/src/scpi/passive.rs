@@ -4,8 +4,19 @@ use super::circuit::{Circuit, Drive, Reading, Terminal, over_resistor};
 use super::line::Line;
 use super::sources::Sources;
 
-/// Voltage at which the clamp limits, volts.
-pub const CLAMP_V: f64 = 10.0;
+/// Voltage that the clamp never passes, volts; the next number is the range below it in which the clamp begins to
+/// conduct.
+const CLAMP_V: f64 = 10.0;
+const SOFT_V: f64 = 1.0;
+
+/// Returns the voltage behind the clamp: exact up to 9 V, then bent towards 10 V.
+pub fn clamped(volts: f64) -> f64 {
+    let over_v = volts.abs() - (CLAMP_V - SOFT_V);
+    match over_v > 0.0 {
+        true => (CLAMP_V - SOFT_V * (-over_v / SOFT_V).exp()).copysign(volts),
+        false => volts,
+    }
+}
 
 /// One resistance at the input, one at the output, one in the load circuit.
 pub struct Passive {
@@ -59,14 +70,14 @@ impl Circuit for Passive {
                 drive => over_resistor(drive, self.output_ohm),
             },
             Terminal::Clamped => Reading {
-                volts: fed.volts.clamp(-CLAMP_V, CLAMP_V),
+                volts: clamped(fed.volts),
                 ..fed
             },
             Terminal::Line => Reading {
                 volts: line_v,
                 ..fed
             },
-            Terminal::Load => Reading {
+            Terminal::Load | Terminal::Shunt => Reading {
                 volts: line_v - fed.volts,
                 ..fed
             },

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
 use tokio::net::{TcpListener, UnixStream};
+use tokio::task::JoinSet;
 use tokio::time::{Instant, sleep, sleep_until};
 
 use super::bench::{Desk, SharedBench};
@@ -48,12 +49,20 @@ impl Clock {
     }
 }
 
-/// Opens every port on the current runtime and serves it until the runtime ends. Returns each instrument's name and
-/// link, in the form of `relayrig instrument --link`.
+/// Ports that are open in real time. Dropping this closes them and ends the connections of their hosts.
+#[derive(Debug)]
+pub struct Served {
+    /// Name and link of each instrument, as the option `--link` of `relayrig instrument` takes them.
+    pub links: Vec<(String, String)>,
+    /// Ends its tasks when it is dropped.
+    _tasks: JoinSet<()>,
+}
+
+/// Opens every port on the current runtime, and serves it until the result is dropped.
 ///
 /// # Errors
 /// Fails when the system refuses a socket or a pseudo-terminal.
-pub async fn real_time(bench: &SharedBench) -> Result<Vec<(String, String)>, SimError> {
+pub async fn real_time(bench: &SharedBench) -> Result<Served, SimError> {
     in_real_time(Arc::new(bench.clone()), Instant::now()).await
 }
 
@@ -64,19 +73,22 @@ pub async fn real_time(bench: &SharedBench) -> Result<Vec<(String, String)>, Sim
 pub(crate) async fn in_real_time(
     bench: Arc<dyn Desk>,
     origin: Instant,
-) -> Result<Vec<(String, String)>, SimError> {
+) -> Result<Served, SimError> {
     let clock = Clock::Real(origin);
-    let mut links = Vec::new();
+    let (mut links, mut tasks) = (Vec::new(), JoinSet::new());
     for (number, (name, link)) in bench.ports().into_iter().enumerate() {
-        let place = open(bench.clone(), number, link, clock).await;
+        let place = open(&mut tasks, bench.clone(), number, link, clock).await;
         let place = place.map_err(|source| SimError::Terminal {
             what: format!("open the port `{name}`"),
             source,
         })?;
         links.extend(bench.links(number, &place));
     }
-    tokio::spawn(beat(bench.clone(), clock));
-    Ok(links)
+    tasks.spawn(beat(bench.clone(), clock));
+    Ok(Served {
+        links,
+        _tasks: tasks,
+    })
 }
 
 /// Advances the bench at regular intervals, also while no host sends anything.
@@ -88,17 +100,23 @@ async fn beat(bench: Arc<dyn Desk>, clock: Clock) {
 }
 
 /// Opens a port and starts to serve it; returns its place (`tcp:HOST:PORT`, `serial:PATH:BAUD`).
-async fn open(bench: Arc<dyn Desk>, number: usize, link: Link, clock: Clock) -> io::Result<String> {
+async fn open(
+    tasks: &mut JoinSet<()>,
+    bench: Arc<dyn Desk>,
+    number: usize,
+    link: Link,
+    clock: Clock,
+) -> io::Result<String> {
     match link {
         Link::Tcp(port) => {
             let listener = TcpListener::bind(("127.0.0.1", port)).await?;
             let place = format!("tcp:{}", listener.local_addr()?);
-            tokio::spawn(accept(bench, number, listener, clock));
+            tasks.spawn(accept(bench, number, listener, clock));
             Ok(place)
         }
         Link::Serial(baud) => {
             let (path, stream) = terminal(baud)?;
-            tokio::spawn(keep(bench, number, stream, clock));
+            tasks.spawn(keep(bench, number, stream, clock));
             Ok(format!("serial:{}:{baud}", path.display()))
         }
     }
@@ -208,7 +226,8 @@ async fn converse<S: AsyncRead + AsyncWrite + Unpin>(
     }
 }
 
-/// Opens a pseudo-terminal; returns its path and its stream. Two threads carry the bytes until the process ends.
+/// Opens a pseudo-terminal; returns its path and its stream. Two threads carry the bytes until
+/// the stream is dropped and no host has the terminal open.
 fn terminal(baud: u32) -> io::Result<(PathBuf, UnixStream)> {
     let Tty {
         master,
@@ -219,11 +238,11 @@ fn terminal(baud: u32) -> io::Result<(PathBuf, UnixStream)> {
     ours.set_nonblocking(true)?;
     let (mut from_host, mut to_host) = (master.try_clone()?, master);
     let (mut to_bench, mut from_bench) = (theirs.try_clone()?, theirs);
+    std::thread::spawn(move || io::copy(&mut from_host, &mut to_bench));
     std::thread::spawn(move || {
         // The open slave keeps the terminal alive between hosts.
         let _slave = slave;
-        io::copy(&mut from_host, &mut to_bench)
+        io::copy(&mut from_bench, &mut to_host)
     });
-    std::thread::spawn(move || io::copy(&mut from_bench, &mut to_host));
     Ok((path, UnixStream::from_std(ours)?))
 }

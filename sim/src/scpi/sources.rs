@@ -15,7 +15,7 @@ pub struct Sources {
     pulse: PulseInput,
 }
 
-/// Pulse source at an input, with the instant from which it has driven so.
+/// Pulse source at an input, with the instant of its first edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PulseInput {
     drive: Drive,
@@ -34,9 +34,13 @@ impl Default for PulseInput {
 impl PulseInput {
     /// Connects a source at `now_us`.
     pub fn new(drive: Drive, now_us: f64) -> Self {
+        let delay_us = match drive {
+            Drive::Pulses(pulses) => pulses.delay_us,
+            Drive::Open | Drive::Voltage { .. } | Drive::Current { .. } | Drive::Sine { .. } => 0.0,
+        };
         Self {
             drive,
-            from_us: now_us,
+            from_us: now_us + delay_us,
         }
     }
 
@@ -77,7 +81,7 @@ impl Sources {
     /// Advances to `to_us`.
     pub fn advance(&mut self, to_us: u64) {
         self.now_us = to_us;
-        self.line.advance(to_us);
+        self.line.advance(to_us as f64);
     }
 
     /// Connects a source from the present instant on.
@@ -86,8 +90,8 @@ impl Sources {
             Terminal::Input => self.input = drive,
             Terminal::Pulse => self.pulse = PulseInput::new(drive, self.now_us as f64),
             Terminal::Output => self.output = drive,
-            Terminal::Line => self.line.drive(drive, self.now_us),
-            Terminal::Load | Terminal::Clamped | Terminal::Socket => {}
+            Terminal::Line => self.line.drive(drive, self.now_us as f64),
+            Terminal::Load | Terminal::Shunt | Terminal::Clamped | Terminal::Socket => {}
         }
     }
 

@@ -34,6 +34,7 @@ impl Failure {
     pub(crate) const UNTERMINATED: Self = Self(-420, "Query UNTERMINATED");
     pub(crate) const UNTERMINATED_INDEFINITE: Self =
         Self(-440, "Query UNTERMINATED after indefinite response");
+    pub(crate) const OVERCURRENT: Self = Self(-300, "Device-specific error;Overcurrent");
     pub(crate) const LOCAL: Self = Self(550, "Command not allowed in local");
 
     /// Returns the bit of the event register that this class of errors sets.

@@ -20,6 +20,10 @@ pub enum Subject {
     ReferenceOperations = 6,
     /// Positions of the defects in a block of the lot.
     DefectBlock = 7,
+    /// Values of a chamber, its sensors and its sockets.
+    Chamber = 8,
+    /// Noise of the sensors of a chamber.
+    ChamberNoise = 9,
 }
 
 /// A random stream.

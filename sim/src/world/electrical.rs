@@ -20,6 +20,6 @@ impl Circuit for World {
     }
 
     fn line_deg(&self) -> f64 {
-        0.0
+        self.fixture.line_deg()
     }
 }

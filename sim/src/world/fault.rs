@@ -1,6 +1,7 @@
 //! Faults of machine and parts, by name. The code of a fault is where the affected device is simulated, in this folder:
 //! drives and air in `mechanism.rs`, handing over of parts in `mechanism/parts.rs`, sensors and buttons in
-//! `mechanism/sensors.rs`, the part itself in `magazine.rs`, the board in `mod.rs`.
+//! `mechanism/sensors.rs`, the part itself in `magazine.rs`, the board in `mod.rs`, contactors and socket in
+//! `ssr_board/power.rs`.
 
 use std::path::Path;
 
@@ -54,6 +55,9 @@ faults! {
         StartButton = "start_button", ResetButton = "reset_button",
         BinFull = "bin_full", Starved = "starved", SensorStuck = "sensor_stuck",
         SensorLost = "sensor_lost", SensorBounce = "sensor_bounce",
+        LineWelded = "line_contactor_welded", LineBroken = "line_contactor_broken",
+        LoopWelded = "loop_contactor_welded", LoopBroken = "loop_contactor_broken",
+        MirrorsStuck = "mirrors_stuck", SocketShort = "socket_short",
     }
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
@@ -145,9 +149,10 @@ impl WorldFaults {
         })
     }
 
-    /// Removes all faults: those that wait for their part, and the parameters of the whole rig such as `refeed`.
+    /// Removes the faults that wait for their part or time. Parameters of the whole rig, such as `refeed`, stay.
     pub fn clear(&mut self) {
-        self.0.clear();
+        self.0
+            .retain(|(fault, _)| fault.kind() == FaultKind::OfStart);
     }
 
     /// Removes the fault if it strikes at this part (number from 1); returns true when it strikes.

@@ -5,9 +5,10 @@
 use super::board::Board;
 use super::board::supply::{CoilSupply, SupplyRange};
 use super::draw::Draw;
+use super::fault::Fault;
 use super::signal::{Commands, In, Quantity, Source};
 use super::specimen::Specimen;
-use super::ssr_board::SsrBoard;
+use super::ssr_board::{SsrBoard, Troubles};
 use super::table::{WorldTable, present};
 use super::wiring::Wiring;
 use crate::config::{ConfigError, Files, RigFile};
@@ -50,8 +51,9 @@ impl Fixture {
     ) -> Result<Self, ConfigError> {
         let kind: Option<String> = files.recipe(recipe)?.get("kind")?;
         if kind.as_deref() == Some("ssr") {
+            let mains = present(&table.mains, "mains", files)?;
             let table = present(&table.fixture, "fixture", files)?;
-            return Ok(Self::Ssr(Box::new(SsrBoard::new(&table, draw))));
+            return Ok(Self::Ssr(Box::new(SsrBoard::new(&table, &mains, draw))));
         }
         let table = present(&table.board, "board", files)?;
         let supply = CoilSupply::new(&table, wiring, rig.supply_ranges.clone());
@@ -72,6 +74,14 @@ impl Fixture {
         match self {
             Self::Relay(board) => board.probe(probes.up, probes.touch, part),
             Self::Ssr(board) => board.probe(probes),
+        }
+    }
+
+    /// Sets the faults of the board; `lasts` says which are present.
+    pub fn trouble(&mut self, lasts: impl Fn(Fault) -> bool) {
+        match self {
+            Self::Relay(_) => {}
+            Self::Ssr(board) => board.trouble(Troubles::of(lasts)),
         }
     }
 
@@ -161,6 +171,14 @@ impl Fixture {
         match self {
             Self::Relay(board) => board.overdrives(),
             Self::Ssr(_) => &[],
+        }
+    }
+
+    /// Returns the present phase of the line, 0 to 360 degrees; 0 without a line.
+    pub fn line_deg(&self) -> f64 {
+        match self {
+            Self::Relay(_) => 0.0,
+            Self::Ssr(board) => board.line_deg(),
         }
     }
 

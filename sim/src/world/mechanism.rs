@@ -146,7 +146,7 @@ impl Mechanism {
             scheduled,
             next_us: u64::MAX,
             crashes: Vec::new(),
-            driven: VecDeque::new(),
+            driven: VecDeque::with_capacity(MOTION_STARTS_KEPT),
         };
         mechanism.schedule();
         mechanism
@@ -193,10 +193,10 @@ impl Mechanism {
     }
 
     fn note_driven(&mut self, now_us: u64, what: &'static str) {
-        self.driven.push_back((now_us, what));
-        if self.driven.len() > MOTION_STARTS_KEPT {
+        if self.driven.len() == MOTION_STARTS_KEPT {
             self.driven.pop_front();
         }
+        self.driven.push_back((now_us, what));
     }
 
     /// Cancels all faults; a fault that has struck keeps its effects.
@@ -276,7 +276,8 @@ impl Mechanism {
         &self.cylinders[stroke as usize]
     }
 
-    fn is_disturbed(&self, fault: Fault) -> bool {
+    /// Checks whether a timed fault lasts at present.
+    pub fn is_disturbed(&self, fault: Fault) -> bool {
         self.disturbed.contains(&fault)
     }
 

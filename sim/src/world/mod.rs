@@ -5,6 +5,7 @@
 //!                                -> mechanism  (cylinders, axis, sensors; places and parts)
 //!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay, resistor, ssr)
 //! instruments -> electrical -> ssr_board, the board of a rig with instruments (fixture chooses the board)
+//! terminals -> thermostat, a world of its own: chamber (oven) and rack in place of board and mechanism
 //! ```
 //!
 //! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the board. Every subject
@@ -26,6 +27,7 @@ pub mod fixture;
 pub mod gates;
 pub mod magazine;
 pub mod mechanism;
+pub mod oven;
 pub mod places;
 pub mod posture;
 pub mod probes;
@@ -37,11 +39,13 @@ pub mod specimen;
 pub mod ssr;
 pub mod ssr_board;
 pub mod table;
+pub mod thermostat;
 pub mod wiring;
 
 use std::path::PathBuf;
 
-use crate::config::{ConfigError, Files, RigFile, SupplyRange, read_rig, read_world};
+use crate::config::{ConfigError, Files, RigFile, SupplyRange, read_rig};
+use crate::rig::WorldModel;
 use crate::scpi::circuit::Circuit;
 use crate::terminal::Plant;
 use axis::Axis;
@@ -55,7 +59,8 @@ use magazine::{Magazine, Part};
 use mechanism::Mechanism;
 use signal::{Commands, In, Out};
 use specimen::Specimen;
-use table::WorldTable;
+use table::{MechanismTable, present, read_world};
+use thermostat::OvenWorld;
 use wiring::{Wire, Wiring};
 
 /// Configuration of a world.
@@ -75,6 +80,21 @@ pub struct WorldOptions {
     pub reference_parts: bool,
     /// Faults of the world by name and value; NaN selects the default of the table.
     pub faults: Vec<(String, f64)>,
+}
+
+/// Builds the world of a rig: a chamber where the world file has `[chamber]`, else a line with a nest. Also returns the
+/// seed of noise and temperatures where it differs from the seed of the rig.
+///
+/// # Errors
+/// Fails when a configuration file is missing or wrong, or a fault is unknown.
+pub fn build(options: &WorldOptions) -> Result<(Box<dyn WorldModel>, Option<u64>), ConfigError> {
+    let table = read_world(&options.files, options.world_file.as_deref())?;
+    if table.chamber.is_some() {
+        return Ok((Box::new(OvenWorld::build(options)?), None));
+    }
+    let world = World::build(options)?;
+    let noise_seed = world.noise_seed();
+    Ok((Box::new(world), noise_seed))
 }
 
 /// The simulated world.
@@ -107,7 +127,8 @@ impl World {
         let path = options.files.path("sim.toml");
         let faults = WorldFaults::resolve(&options.faults, &table.fault, &path)?;
         let mut draw = Draw::new(options.seed, Subject::Rig, 0);
-        let environment = Environment::new(&table.environment, &mut draw);
+        let environment = present(&table.environment, "environment", &options.files)?;
+        let environment = Environment::new(&environment, &mut draw);
         let (track, ambient) = (environment.track_c, environment.ambient_c);
         let magazine = Magazine::load(options, &table, &faults, track, ambient)?;
         let drift = faults.values(Fault::Drift).next();
@@ -120,10 +141,11 @@ impl World {
         let clock_hz =
             rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
         let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
-        let axis = sort_axis(&rig, &table);
+        let strokes_table = present(&table.mechanism, "mechanism", &options.files)?;
+        let axis = sort_axis(&rig, &strokes_table);
         let bodies = Bodies::read(&options.files, &options.recipe)?;
         let mechanism = Mechanism::new(
-            &table.mechanism,
+            &strokes_table,
             axis,
             (rig.bins, bodies),
             (
@@ -232,6 +254,8 @@ impl World {
             stay: self.mechanism.probes_stay(now),
             door_closed: self.signal(In::DoorClosed),
         };
+        let mechanism = &self.mechanism;
+        self.fixture.trouble(|fault| mechanism.is_disturbed(fault));
         self.fixture.probe(probes, in_nest(&mut self.mechanism));
         for (wire, edges) in &mut self.edges {
             if let Some(present) = self.mechanism.signal(wire.signal, now) {
@@ -281,8 +305,8 @@ impl Plant for World {
         }
     }
 
-    fn analog_out(&mut self, module: &str, volts: f64) {
-        if let Some(wire) = wiring::at(&self.wiring.sources, module, 0) {
+    fn analog_out(&mut self, module: &str, channel: u8, volts: f64) {
+        if let Some(wire) = wiring::at(&self.wiring.sources, module, channel) {
             self.fixture
                 .supply(wire.signal, volts, in_nest(&mut self.mechanism));
         }
@@ -344,7 +368,7 @@ fn in_nest(mechanism: &mut Mechanism) -> Option<&mut Specimen> {
 }
 
 /// Builds the slide with the stops and bins of the rig file, braked at its park position.
-fn sort_axis(rig: &RigFile, table: &WorldTable) -> Axis {
+fn sort_axis(rig: &RigFile, mechanism: &MechanismTable) -> Axis {
     let mut points = [None; 8];
     let stops = rig
         .axis
@@ -357,7 +381,6 @@ fn sort_axis(rig: &RigFile, table: &WorldTable) -> Axis {
         }
     }
     let park = rig.axis.get("park").map_or(0.0, |&(_, x)| x);
-    let mechanism = &table.mechanism;
     Axis::new(
         mechanism.axis_mm_per_s,
         mechanism.axis_mm_per_s2,

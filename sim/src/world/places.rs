@@ -42,7 +42,12 @@ impl Places {
         self.done.extend(part.bodies());
     }
 
-    /// Returns the truth of every lot part that has entered the nest, in that order.
+    /// Forgets the parts that have left the line.
+    pub fn forget_finished(&mut self) {
+        self.done.clear();
+    }
+
+    /// Returns the truth of every lot part that has entered the nest and is not forgotten, in that order.
     pub fn truth(&self) -> Vec<PartTruth> {
         let inside = [&self.nest, &self.carried].into_iter().flatten();
         let done = self.done.iter().map(|body| body.part.clone());

@@ -29,6 +29,10 @@ impl WorldRecord for World {
         self.mechanism.cancel_faults();
     }
 
+    fn forget_finished(&mut self) {
+        self.mechanism.places.forget_finished();
+    }
+
     fn motion_starts(&self) -> Vec<(u64, &'static str)> {
         self.mechanism.motion_starts().collect()
     }

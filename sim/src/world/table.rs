@@ -8,8 +8,9 @@ use std::path::Path;
 
 use super::relay::table::{DefectTable, LotTable, RelayTable};
 use super::resistor::ResistorTable;
-use super::ssr::table::SsrTable;
-use super::ssr_board::FixtureTable;
+use super::ssr::table::{SsrAcTable, SsrTable};
+use super::ssr_board::{FixtureTable, MainsTable};
+use super::thermostat::table::{ChamberTable, ThermostatTable};
 use crate::config::{ConfigError, Files};
 use crate::table::{Read, Table};
 
@@ -69,11 +70,12 @@ table!(
 table!(
     /// All tables of the file; the kind of the parts decides which of them a rig needs.
     WorldTable {
-        devices: DeviceWorld, environment: EnvironmentTable, mechanism: MechanismTable,
-        fault: BTreeMap<String, FaultSpec>,
+        devices: DeviceWorld, fault: BTreeMap<String, FaultSpec>,
+        environment: Option<EnvironmentTable>, mechanism: Option<MechanismTable>,
         board: Option<BoardTable>, lot: Option<LotTable>, relay: Option<RelayTable>,
         defects: Option<DefectTable>, resistor: Option<ResistorTable>,
-        fixture: Option<FixtureTable>, ssr: Option<SsrTable>,
+        fixture: Option<FixtureTable>, mains: Option<MainsTable>, ssr: Option<SsrTable>, ssr_ac: Option<SsrAcTable>,
+        chamber: Option<ChamberTable>, thermostat: Option<ThermostatTable>,
         instrument: Option<BTreeMap<String, Table>>,
     }
 );
@@ -96,7 +98,7 @@ impl WorldTable {
     /// Fails when one of them is missing.
     pub fn relays(&self, files: &Files) -> Result<RelayWorld, ConfigError> {
         Ok(RelayWorld {
-            environment: self.environment.clone(),
+            environment: present(&self.environment, "environment", files)?,
             board: present(&self.board, "board", files)?,
             lot: present(&self.lot, "lot", files)?,
             relay: present(&self.relay, "relay", files)?,

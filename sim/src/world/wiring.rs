@@ -17,7 +17,7 @@ pub struct Wire<S> {
 }
 
 /// Signals of one kind, by module and channel.
-type Terminals<S> = BTreeMap<String, Vec<(u8, Wire<S>)>>;
+pub type Terminals<S> = BTreeMap<String, Vec<(u8, Wire<S>)>>;
 
 /// Signals at all terminals of the rig.
 #[derive(Debug, Clone)]
@@ -63,7 +63,8 @@ pub fn on<'a, S>(terminals: &'a Terminals<S>, module: &str) -> &'a [(u8, Wire<S>
     terminals.get(module).map_or(&[], Vec::as_slice)
 }
 
-fn terminals<S>(
+/// Resolves named points; ignores names without a signal.
+pub fn terminals<S>(
     points: &BTreeMap<String, Terminal>,
     named: impl Fn(&str) -> Option<S>,
 ) -> Terminals<S> {

@@ -64,11 +64,16 @@ impl PaperArgs {
     }
 
     pub fn write(&self, page: &str) -> anyhow::Result<()> {
-        let mut out = sink(&self.out)?;
-        out.write_all(page.as_bytes())?;
-        let name = self.out.display();
-        out.flush().with_context(|| format!("writing {name}"))
+        write_page(&self.out, page)
     }
+}
+
+/// Writes a page to a file, or to stdout for `-`.
+pub(in crate::cli) fn write_page(file: &Path, page: &str) -> anyhow::Result<()> {
+    let mut out = sink(file)?;
+    out.write_all(page.as_bytes())?;
+    let name = file.display();
+    out.flush().with_context(|| format!("writing {name}"))
 }
 
 /// Creates the file, or opens stdout for `-`.

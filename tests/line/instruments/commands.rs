@@ -65,7 +65,7 @@ const CHECKS: [(&str, &str, &str); 7] = [
     (
         "ac_source",
         "ac-source-61500",
-        "--run set,level_v=230,frequency_hz=50 --run measure --run off",
+        "--run set,level_v=230,frequency_hz=50,limit_a=1 --run measure --run off",
     ),
     (
         "pulses",
@@ -227,4 +227,17 @@ fn monitor_repeats_a_query() {
     let words = "--query *IDN? --every 50 --seconds 2 --traffic";
     let said = bench.run("monitor", "smu", words).with_status(0);
     assert!(said.stdout.contains("> *IDN?\\n"), "{said:?}");
+}
+
+#[test]
+fn monitor_of_a_missing_instrument_backs_off() {
+    let shop = Workshop::new("instrument_monitor_missing");
+    let words = "instrument monitor --link tcp:127.0.0.1:1 --query *STB? --every 1 --seconds 2";
+    let said = shop.run(words).with_status(0);
+    // Without growing pauses, hundreds of rows would come.
+    assert!((1..=3).contains(&said.stdout.lines().count()), "{said}");
+    assert!(
+        said.stdout.contains("The link is down after 3 attempts"),
+        "{said}"
+    );
 }

@@ -178,7 +178,8 @@ enum Expected {
     Amps(f64),
     /// Preamble of a waveform with this number of points.
     Points(u64),
-    Bytes(u64),
+    /// Block with this number of 16-bit samples.
+    Samples(u64),
 }
 
 impl Value {
@@ -206,7 +207,7 @@ impl Value {
         match self.way {
             Way::Blocks => vec![
                 Expected::Points(self.points()),
-                Expected::Bytes(self.points()),
+                Expected::Samples(self.points()),
             ],
             _ => vec![Expected::Amps(self.level_v() / 1e3)],
         }
@@ -220,7 +221,7 @@ impl Expected {
             (Self::Points(points), Reply::Numbers(found)) => {
                 found.get(2) == Some(&(*points as f64))
             }
-            (Self::Bytes(bytes), Reply::Block(found)) => found.len() as u64 == *bytes,
+            (Self::Samples(samples), Reply::Block(found)) => found.len() as u64 == 2 * samples,
             _ => false,
         }
     }

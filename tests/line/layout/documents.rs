@@ -20,9 +20,11 @@ const BOUNDED: &[(&str, usize)] = &[
     ("docs/measuring.md", 12_288),
     ("docs/integrating.md", 8192),
     ("docs/extending.md", 6144),
+    ("docs/fleet.md", 6144),
     ("docs/limits.md", 6144),
     ("docs/prompts.md", 4096),
     ("docs/serials.md", 6144),
+    ("docs/tooling.md", 4096),
 ];
 
 /// Documents without a length limit.

@@ -12,10 +12,12 @@ const PURE: &[(&str, &[&str])] = &[
         &["serde", "serde_json", "thiserror", "toml", "units"],
     ),
     ("plan", &["lpm", "thiserror"]),
+    ("chamber", &["thiserror"]),
     ("quality", &["serde", "statrs", "thiserror", "utoipa"]),
     (
         "machine",
         &[
+            "chamber",
             "dcon",
             "lpm",
             "scpi",

@@ -17,10 +17,9 @@ const KINDS: &[(&str, &[&str])] = &[
             "release_time",
             "operate_bounce",
             "release_bounce",
-            "contact_resistance",
+            "contact_resistance_n",
             "contact_drop",
             "zero_cross",
-            "chamber_",
         ],
     ),
     (
@@ -44,6 +43,20 @@ const KINDS: &[(&str, &[&str])] = &[
             "kelvin_out",
             "output_safe",
             "short_check",
+        ],
+    ),
+    (
+        "crates/machine/src/dut/thermostat/",
+        &[
+            "operate_temperature",
+            "reset_temperature",
+            "contact_resistance_m",
+            "chamber_",
+            "chamber::",
+            "socket_select",
+            "socket_drop",
+            "main_contactor",
+            "heater_power",
         ],
     ),
 ];

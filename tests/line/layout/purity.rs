@@ -5,6 +5,7 @@ use super::tree::{assert_none, has_word, rust_files};
 /// Names of clocks, sockets, files, `async` and logging.
 const PURE: &[&str] = &[
     "units",
+    "chamber",
     "form",
     "dcon",
     "lpm",
@@ -43,6 +44,7 @@ const OUTSIDE: &[&str] = &[
 
 /// Modules whose matches have no `_` arm, so that the compiler finds every place for a new state.
 const TOTAL: &[&str] = &[
+    "chamber",
     "handling",
     "station",
     "guard",

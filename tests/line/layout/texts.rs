@@ -73,7 +73,8 @@ fn capital(code: &str) -> String {
     first.to_uppercase() + rest
 }
 
-/// A text counts as used where its id or its code appears. The code of an interruption may be that of an alarm.
+/// A text counts as used when its id or its code appears. The text of an interruption also counts when an alarm has its
+/// code.
 #[test]
 fn no_text_is_left_without_use() {
     let written: String = files(&USERS)

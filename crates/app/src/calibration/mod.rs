@@ -17,6 +17,7 @@ pub use compare::{FactorComparison, K, K_JOINT};
 use config::{Folder, Plant, load_recipe};
 use history::{CalibrationRecord, Store, snapshot_hash};
 use machine::dut::Calibration;
+use machine::dut::device::Made;
 use std::path::Path;
 use std::sync::OnceLock;
 use texts::Message;
@@ -53,8 +54,11 @@ pub fn calibrate(
     (recipe, verify): (&str, bool),
     outer: &mut dyn Subscriber,
 ) -> anyhow::Result<Calibrated> {
-    let nominal_v = reference_voltage(&files.config, recipe)?;
     history::check_rig(&files.db, source.is_simulated())?;
+    if let Some((found, file)) = certified(&files.config, recipe, source)? {
+        return keep_certified(files, found, &file, verify);
+    }
+    let nominal_v = reference_voltage(&files.config, recipe)?;
     let stored = match verify {
         true => Some(valid_calibration(
             &open(&files.db)?,
@@ -92,6 +96,66 @@ pub fn calibrate(
         }
         None => keep(&files.db, found),
     }
+}
+
+/// Returns the calibration that the certificates of the plant give for the recipe, with the name of their file; `None` for
+/// a kind that is calibrated on parts.
+fn certified(
+    config: &Folder,
+    recipe: &str,
+    source: &RigSource,
+) -> anyhow::Result<Option<(Calibration, String)>> {
+    let plant = Plant::load(config)?;
+    let device = load_recipe(config, recipe)?.device;
+    let made = Made {
+        at_us: jiff::Timestamp::now().as_microsecond(),
+        valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
+        simulated: source.is_simulated(),
+    };
+    let found = device.certified(&plant.rig(), made);
+    let path = |file: &String| config.path(file).display().to_string();
+    let file = plant.calibration.certificate_file.as_ref().map(path);
+    if found.is_none() && device.part().nominal_v.is_none() && device.calibrated_for().is_some() {
+        bail!(
+            "{}: found no calibration.rack, expected the file of the certificate",
+            config.path("rig.toml").display()
+        );
+    }
+    Ok(found.zip(file))
+}
+
+/// Stores a certified calibration, or compares the stored one with it. A certificate whose calibration has run out must
+/// be replaced first.
+fn keep_certified(
+    files: &Files,
+    found: Calibration,
+    file: &str,
+    verify: bool,
+) -> anyhow::Result<Calibrated> {
+    let facts = found.facts();
+    let store = open(&files.db)?;
+    if verify {
+        let (record, expected) = valid_calibration(&store, facts.is_simulated, facts.nominal_v)?;
+        let compared = compare::compare(&found, &expected);
+        let verified = compared.iter().all(FactorComparison::agrees);
+        let due_at_us = record.due_at_us;
+        open(&files.db)?.save_calibration(&CalibrationRecord { verified, ..record })?;
+        return Ok(Calibrated::Verified {
+            compared,
+            due_at_us,
+        });
+    }
+    let latest = store.latest_calibration_of(facts.is_simulated, facts.nominal_v)?;
+    let overdue = latest.filter(|it| it.is_overdue(facts.made_at_us));
+    let same = |it: &CalibrationRecord| {
+        let known: Option<Calibration> = serde_json::from_str(&it.body).ok();
+        known.is_some_and(|it| it.facts().factors == facts.factors)
+    };
+    if let Some(old) = overdue.filter(same) {
+        let made = date(old.made_at_us)?;
+        bail!("{file}: found the certificate of {made}, which has run out, expected a newer one");
+    }
+    keep(&files.db, found)
 }
 
 /// Returns the nominal coil voltage of the recipe, V; fails when no reference part has this voltage.

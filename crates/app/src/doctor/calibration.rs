@@ -30,7 +30,10 @@ pub(super) fn check(history: &Examination, now: Timestamp) -> Vec<Finding> {
 fn check_one(record: &CalibrationRecord, now_us: i64) -> Finding {
     let voltage = serde_json::from_str::<Calibration>(&record.body);
     let name = match &voltage {
-        Ok(calibration) => format!("{} V", calibration.facts().nominal_v),
+        Ok(calibration) => match calibration.facts().nominal_v {
+            volts if volts > 0.0 => format!("{volts} V"),
+            _ => "rack".to_owned(),
+        },
         Err(_) => record.hash.clone(),
     };
     let subject = Subject::new(Check::Calibration, name, EXPECTED);

@@ -93,7 +93,7 @@ async fn test(
 ) -> anyhow::Result<PhaseResult> {
     let before = survey::cpu_time();
     let load = file.map(Load::start).transpose()?;
-    let lateness = thread.handle.spawn(measure(span)).await;
+    let lateness = thread.keeper().handle.spawn(measure(span)).await;
     load.map_or(Ok(()), Load::end)?;
     Ok(PhaseResult {
         phase,

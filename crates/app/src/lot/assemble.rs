@@ -12,7 +12,8 @@ use machine::dut::device::Rig;
 use machine::guard::{Actuator, Guard, PartSize};
 use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
-use machine::rig::axis::AxisStation;
+use machine::rig::axis::AxisTable;
+use machine::rig::handling::Handling;
 use machine::station::{Plan, Station};
 use machine::view::{Mimic, MimicBody};
 use std::sync::Arc;
@@ -34,17 +35,8 @@ pub(super) fn cycle(
         serials,
     } = prior_state;
     let plant = context.plant;
-    let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     let recipe = Arc::clone(context.recipe);
     let wiring = Arc::new(recipe.wired(&plant.wiring, &plant.accuracy)?);
-    let strokes = Strokes {
-        length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
-        axis_mm: wiring
-            .axis
-            .stations()
-            .map(|at| (at, wiring.axis.point(at).x_mm))
-            .collect::<Vec<(AxisStation, f64)>>(),
-    };
     let calibrated = calibration.is_some();
     let rig = Rig {
         wiring: &wiring,
@@ -74,8 +66,17 @@ pub(super) fn cycle(
             Purpose::BetweenLots(_) | Purpose::Calibration => Vec::new(),
         },
     };
-    let mechanism = Mechanism::new(strokes, wiring.strokes, size_of(context.recipe));
-    let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
+    let (mut station, guard) = match &wiring.handling {
+        Handling::Feeder(table) => {
+            let mut guard = guard(plant)?;
+            let size = size_of(context.recipe);
+            let strokes = strokes(&mut guard, &table.axis, size);
+            let mechanism = Mechanism::new(strokes, table.strokes, size);
+            let station = Station::new(plan, device, table.axis.clone(), mechanism);
+            (station, Some(guard))
+        }
+        Handling::Rack(rack) => (Station::with_rack(plan, device, rack.clone()), None),
+    };
     // An unattended run raises no alarms of earlier runs again, because no operator is there to acknowledge them.
     for left in alarms.into_iter().filter(|_| attended) {
         raise_again(&mut station, left, context.epoch_us);
@@ -83,9 +84,12 @@ pub(super) fn cycle(
     Ok(Cycle::new(wiring, pace, station, guard, ends, links))
 }
 
-/// Returns the drawing of the machine for screens, with parts of the size in `recipe`.
+/// Returns the drawing of the machine for screens, with parts of the size in `recipe`; empty on a rig where nothing moves.
 pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
-    let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
+    if plant.scene.is_none() {
+        return Ok(Mimic { bodies: Vec::new() });
+    }
+    let guard = guard(plant)?;
     let ride = |(it, way): (Actuator, [f64; 3])| (it.name().to_owned(), way);
     let bodies = guard.drawing(&size_of(recipe)).into_iter();
     let bodies = bodies.map(|body| MimicBody {
@@ -97,6 +101,26 @@ pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     Ok(Mimic {
         bodies: bodies.collect(),
     })
+}
+
+fn strokes(guard: &mut Guard, axis: &AxisTable, size: PartSize) -> Strokes {
+    Strokes {
+        sensor_off_mm: Actuator::ALL.map(|actuator| guard.sensor_off_mm(actuator)),
+        probes_beside_pusher: guard.probes_rise_beside_pusher(size),
+        length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
+        axis_mm: axis
+            .stations()
+            .map(|at| (at, axis.point(at).x_mm))
+            .collect(),
+    }
+}
+
+fn guard(plant: &Plant) -> anyhow::Result<Guard> {
+    let scene = plant
+        .scene
+        .as_ref()
+        .context("the rig has no feeder, so it has no scene.toml")?;
+    Guard::build(scene).context("config/scene.toml")
 }
 
 /// Raises an alarm again that an earlier run left unacknowledged.

@@ -36,7 +36,7 @@ use super::controls::Controls;
 use super::exit::{Cause, Exit};
 use super::links;
 use super::order_queue::OrderQueue;
-use super::real_time::RigThread;
+use super::real_time::{Owned, RigThread};
 use super::source::RigSource;
 use super::traces::Traces;
 use bus::{LineLog, Pace};
@@ -80,8 +80,8 @@ impl LotRunner<'_> {
         controls
             .view
             .send_modify(|view| view.host = thread.rights.clone());
-        let mut lines = links::open(context, &pace, &thread.handle).await?;
-        let traces = Traces::new(self.db, context.plant, &lines.logs);
+        let mut lines = links::open(context, &pace, thread.keeper()).await?;
+        let traces = Traces::new(self.db, context.plant, &lines);
         controls.show_traffic(&traces);
         let (recorder, prior_state) = Recorder::open(self.db, context)?;
         let (history, history_seen) = watch::channel(HistoryState::Written);
@@ -122,12 +122,13 @@ impl LotRunner<'_> {
         let ends = (ends, std::mem::take(&mut lines.instruments));
         let attended = controls.attended;
         let cycle = assemble::cycle(context, prior_state, pace, ends, links, attended)?;
-        let running = thread.handle.spawn(cycle.run());
+        let running = Owned::new(cycle.spawn(&thread.keeper().handle));
         let kept = stream.keep(received, &recorded).await;
         if let Err(error) = &kept {
             stream.give_up(error);
         }
-        let ended = running.await;
+        let ended = running.end().await;
+        lines.end_instruments().await;
         // The cycle has dropped its sender, so this ends; the last snapshot is then on the page before the end of the
         // run.
         showing.await?;

@@ -4,6 +4,7 @@ use super::{LotContext, Purpose};
 use anyhow::Context;
 use history::{Store, UnacknowledgedAlarm};
 use machine::dut::Calibration;
+use machine::dut::device::Made;
 use machine::handling::inside::Inside;
 use machine::handling::serial::{Serials, Source, SourceName};
 use machine::handling::wear::Uses;
@@ -29,9 +30,11 @@ impl PriorState {
     pub fn read(store: &Store, context: &LotContext) -> anyhow::Result<Self> {
         let simulated = context.is_simulated();
         let calibration = match context.purpose {
-            _ if simulated => live_calibration(context),
+            _ if simulated => live_calibration(context).or_else(|| certified(context)),
             Purpose::Calibration => None,
-            Purpose::Lot | Purpose::BetweenLots(_) => valid_calibration(store, context)?,
+            Purpose::Lot | Purpose::BetweenLots(_) => {
+                valid_calibration(store, context)?.or_else(|| certified(context))
+            }
         };
         let (plant, recipe) = (context.plant, context.recipe);
         let wiring = recipe.wired(&plant.wiring, &plant.accuracy)?;
@@ -119,9 +122,21 @@ fn uses(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
     })
 }
 
+/// Returns the calibration that the certificates of the plant give, as made now; `None` for a kind that is calibrated on
+/// parts. A stored one that has run out refuses the lot before.
+fn certified(context: &LotContext) -> Option<Calibration> {
+    let made = Made {
+        at_us: context.epoch_us,
+        valid_us: (context.plant.calibration.valid_h * 3.6e9) as i64,
+        simulated: context.is_simulated(),
+    };
+    let device = &context.recipe.device;
+    device.certified(&context.plant.rig(), made)
+}
+
 /// Returns the stored calibration; `None` when it is overdue.
 fn valid_calibration(store: &Store, context: &LotContext) -> anyhow::Result<Option<Calibration>> {
-    let Some(nominal_v) = context.recipe.device.part().nominal_v else {
+    let Some(nominal_v) = context.recipe.device.calibrated_for() else {
         return Ok(None);
     };
     let Some(record) = store.latest_calibration_of(false, nominal_v)? else {

@@ -55,7 +55,9 @@ impl Recorder {
             writing: Duration::ZERO,
         };
         if !context.purpose.is_between_lots() {
-            recorder.begin(context, prior_state.calibration.as_ref());
+            let calibration = prior_state.calibration.as_ref();
+            recorder.begin(context, calibration);
+            recorder.certified(context, calibration)?;
             recorder.write()?;
         }
         Ok((recorder, prior_state))
@@ -191,6 +193,16 @@ impl Recorder {
             calibration: record,
         }));
         Ok(())
+    }
+
+    /// Queues a calibration that this run takes over from the certificates of the plant.
+    fn certified(
+        &mut self,
+        context: &LotContext,
+        calibration: Option<&Calibration>,
+    ) -> anyhow::Result<()> {
+        let made_now = calibration.filter(|it| it.facts().made_at_us == context.epoch_us);
+        made_now.map_or(Ok(()), |it| self.calibrated(it, context))
     }
 
     /// Queues the contents of the machine; called before each transaction and at the end of the run.

@@ -131,6 +131,8 @@ pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &s
         values.insert(key.into(), json!(rounded(reading.value)));
         uncertainty.insert(key.into(), json!(rounded(reading.expanded())));
     }
+    let conforms = judged.record.conforms.iter();
+    values.extend(conforms.map(|(key, conforms)| ((*key).to_owned(), json!(conforms))));
     let (seq, _) = number(&judged.part.role, 0);
     let spent = judged.record.spent;
     let mut object = json!({
@@ -157,6 +159,10 @@ pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &s
     });
     if let Some(serial) = &judged.part.serial {
         object["serial"] = json!(serial);
+    }
+    if let Some(at) = judged.part.tested_in {
+        object["socket"] = json!(at.socket);
+        object["batch"] = json!(at.batch);
     }
     object
 }

@@ -24,22 +24,28 @@ pub(super) struct Screen {
 
 impl Subscriber for Screen {
     fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
-        let lines = || self.traces.health();
+        let (lines, instruments) = (|| self.traces.health(), || self.traces.instruments());
         let between = lot.context.purpose.is_between_lots();
         match event {
             LotEvent::Begun if between => self.view.send_modify(|view| {
                 view.simulated = lot.context.is_simulated();
                 view.under_way = false;
+                view.instruments = instruments();
             }),
-            LotEvent::Begun => self.view.send_modify(|view| begun(view, &lot.context)),
+            LotEvent::Begun => self.view.send_modify(|view| {
+                begun(view, &lot.context);
+                view.instruments = instruments();
+            }),
             LotEvent::Cycle(Event::Alarm(..)) => {
-                let lines = lines();
-                self.view.send_modify(|view| view.lines = lines);
+                let (lines, instruments) = (lines(), instruments());
+                self.view.send_modify(|view| {
+                    (view.lines, view.instruments) = (lines, instruments);
+                });
             }
             LotEvent::Cycle(Event::Judged(it)) if is_shown(it, between) => {
-                let lines = lines();
+                let (lines, instruments) = (lines(), instruments());
                 self.view.send_modify(|view| {
-                    view.lines = lines;
+                    (view.lines, view.instruments) = (lines, instruments);
                     judged(view, lot, it);
                 });
             }
@@ -98,7 +104,11 @@ fn judged(view: &mut View, lot: &LotProgress, judged: &Judged) {
     view.verdicts = verdicts.map(|(name, n)| ((*name).to_owned(), *n)).collect();
     view.parts_per_hour = lot.per_hour(judged.at);
     let json = rows::json(&lot.context, judged, None, "");
-    let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();
+    let numbers = |key: &str| {
+        let all = json[key].as_object().into_iter().flatten();
+        all.filter_map(|(key, value)| Some((key.clone(), value.as_f64()?)))
+            .collect()
+    };
     let last = LastPart {
         seq: rows::number(&judged.part.role, 0).0,
         verdict: judged.verdict.name().into(),

@@ -28,12 +28,16 @@ struct TestLot {
 
 impl TestLot {
     fn new(attended: bool) -> Self {
+        Self::of(&Folder::built_in(), "jzc-22f-012", attended)
+    }
+
+    fn of(config: &Folder, recipe: &str, attended: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         Self {
-            plant: Plant::load(&Folder::built_in()).unwrap(),
+            plant: Plant::load(config).unwrap(),
             order: LotOrder {
                 lot: "A".into(),
-                recipe: "jzc-22f-012".into(),
+                recipe: recipe.into(),
                 count: Some(COUNT),
                 retest: None,
             },
@@ -142,6 +146,30 @@ fn a_failed_assertion_ends_the_run_in_the_history() {
     assert!(run.closed.is_some(), "the run stays open");
     let standing = archive.standing("A").unwrap().unwrap();
     assert_eq!(standing.state, LotState::Open);
+}
+
+#[test]
+fn a_failed_assertion_leaves_no_source_on() {
+    let config = Folder::built_in_rig("ssr").unwrap();
+    let test = TestLot::of(&config, "ssr-dc-60v-3a", true);
+    let exit = test.run(async |orders, mut seen| {
+        until(&mut seen, |view| view.stage == Some("OnResistance")).await;
+        let request = OrderRequest::new(Order::LampTest {}, By::default(), |_| {
+            panic!("an assertion of the cycle")
+        });
+        orders.send(request).await.unwrap();
+    });
+    assert_eq!(exit, Exit::Trouble(Cause::assertion()));
+    let traffic = test.controls.traffic()(1000);
+    for name in ["smu_in", "smu_out"] {
+        let link = traffic.iter().find(|it| it.line == name).unwrap();
+        let sent = link.entries.iter().filter(|it| it.way == ">");
+        let switched: Vec<&str> = sent
+            .filter_map(|it| it.text.strip_prefix(":OUTP ")?.strip_suffix("\\n"))
+            .collect();
+        assert!(switched.contains(&"ON"), "{name}: {switched:?}");
+        assert_eq!(switched.last(), Some(&"OFF"), "{name}: {switched:?}");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Rows of answers, for JSON and for text.
 
+use history::tooling::{PlanAction, PlanLeg, PlanStep};
 use plan::{Assembly, Direction, Interference, LockedElements, Step, Verified};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -18,52 +19,6 @@ pub struct BlockersRow {
     pub local: Vec<String>,
     /// Elements that its extruded box meets.
     pub boxes: Vec<String>,
-}
-
-/// A straight part of a way.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LegRow {
-    /// Direction of the move.
-    pub direction: &'static str,
-    /// Length of the move, mm.
-    pub distance_mm: f64,
-}
-
-/// What a step does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Action {
-    /// Takes elements off.
-    Remove,
-    /// Puts elements on.
-    Add,
-}
-
-/// A step of a plan.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StepRow {
-    /// Number of the step, from 1.
-    pub step: usize,
-    /// What it does.
-    pub action: Action,
-    /// Ids of the elements that move together.
-    pub elements: Vec<String>,
-    /// Direction of the first leg.
-    pub direction: &'static str,
-    /// Length of the first leg, mm.
-    pub distance_mm: f64,
-    /// Further legs; none for a straight way.
-    pub then: Vec<LegRow>,
-    /// Least distance to anything that stays in place, mm: 0 when the step slides; null beyond 25 mm.
-    pub clearance_mm: Option<f64>,
-    /// Elements along which the step slides.
-    pub slides_on: Vec<String>,
-    /// Least distance to everything else, mm; null beyond 25 mm.
-    pub clearance_to_others_mm: Option<f64>,
-    /// Side from which a tool or a hand reaches the elements.
-    pub tool_side: &'static str,
-    /// True for a step on the bench: the elements are part of a subassembly that moves as a whole.
-    pub on_bench: bool,
 }
 
 /// A locked set.
@@ -105,34 +60,36 @@ pub(super) fn blockers(
         .collect()
 }
 
-/// Returns the row of a step that takes elements off, or that puts them on when it is a step of the assembly.
+/// Returns the row of a step. The legs of `step` already point the way of `action`: off the scene or onto it. `held_by`
+/// lists the elements in place that hold the moving ones.
 pub(super) fn step(
     assembly: &Assembly,
     number: usize,
-    action: Action,
+    action: PlanAction,
     step: &Step,
-    measured: &Verified,
-) -> Option<StepRow> {
-    let leg = |leg: &plan::Leg| LegRow {
-        direction: leg.direction.name(),
+    (measured, held_by): (&Verified, &[usize]),
+) -> Option<PlanStep> {
+    let leg = |leg: &plan::Leg| PlanLeg {
+        direction: leg.direction.name().to_owned(),
         distance_mm: rounded(leg.distance_mm),
     };
     let (first, then) = step.legs.split_first()?;
     let side = match action {
-        Action::Remove => step.side(),
-        Action::Add => step.legs.first().map(|leg| leg.direction.opposite()),
+        PlanAction::Remove => step.side(),
+        PlanAction::Add => step.legs.first().map(|leg| leg.direction.opposite()),
     };
-    Some(StepRow {
+    Some(PlanStep {
         step: number,
         action,
         elements: ids(assembly, step.elements.iter()),
-        direction: first.direction.name(),
+        direction: first.direction.name().to_owned(),
         distance_mm: rounded(first.distance_mm),
         then: then.iter().map(leg).collect(),
         clearance_mm: measured.clearance_mm.map(rounded),
         slides_on: ids(assembly, measured.slides_on.iter()),
         clearance_to_others_mm: measured.clearance_to_others_mm.map(rounded),
-        tool_side: side.map_or("", Direction::name),
+        held_by: ids(assembly, held_by.iter()),
+        tool_side: side?.name().to_owned(),
         on_bench: step.bench.is_some(),
     })
 }
@@ -158,33 +115,6 @@ impl BlockersRow {
             .with("way", self.direction)
             .with("others", self.blockers.join(lang.comma()));
         Some(message.say(lang))
-    }
-}
-
-impl StepRow {
-    /// Returns the step as a sentence for a mechanic.
-    pub fn say(&self, lang: Lang) -> String {
-        let first = format!("{} {} mm", self.direction, self.distance_mm);
-        let legs = self.then.iter();
-        let legs = legs.map(|leg| format!("{} {} mm", leg.direction, leg.distance_mm));
-        let way: Vec<String> = std::iter::once(first).chain(legs).collect();
-        let code = match (self.action, self.on_bench) {
-            (Action::Remove, false) => "remove",
-            (Action::Add, false) => "add",
-            (Action::Remove, true) => "remove_on_bench",
-            (Action::Add, true) => "add_on_bench",
-        };
-        let distance = match self.clearance_mm {
-            Some(mm) => format!("{mm} mm"),
-            None => Message::new("plan", "beyond").say(lang),
-        };
-        Message::new("plan", code)
-            .with("number", self.step)
-            .with("elements", self.elements.join(lang.comma()))
-            .with("way", way.join(lang.comma()))
-            .with("distance", distance)
-            .with("from", self.tool_side)
-            .say(lang)
     }
 }
 

@@ -7,18 +7,19 @@
 //!   the paper.
 
 use super::tables::Tables;
-use crate::collision::load_scene;
-use anyhow::Context;
-use lpm::scene::{Named, Scene};
+use crate::collision::{load_scene, read_scene};
+use anyhow::{Context, anyhow};
+use config::{Folder, scene_text};
+use lpm::scene::{Format, Named, Scene};
 use lpm::{Model, Move, Shape};
 use plan::{Assembly, Direction, Element, Extent, Guided, Interference, Mate, Tolerance};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A scene to plan with.
 #[derive(Debug)]
 pub struct PlanScene {
-    /// The file.
-    pub path: PathBuf,
+    /// Name for people: that of the configuration, or the path of the file.
+    pub name: String,
     /// The elements at their places.
     pub assembly: Assembly,
     /// Groups of elements that are one piece of tooling, by ids.
@@ -36,18 +37,46 @@ impl PlanScene {
     /// Fails on an invalid file, an element outside `omega`, elements that overlap at the start, or a mate that the
     /// geometry does not have; the error names the file, what was found and what was expected.
     pub fn load(path: &Path, omega: Option<Extent>) -> anyhow::Result<PlanScene> {
-        let named = || path.display().to_string();
         let (scene, text, format) = load_scene(path)?;
-        let tables = Tables::read(&text, format).with_context(named)?;
-        let joined = joined(&scene)?;
-        let mut guided = run_in_each_other(&scene, &tables);
+        let name = path.display().to_string();
+        let made = Self::assembled(path, (&scene, &text, format), omega)?;
+        Ok(PlanScene { name, ..made })
+    }
+
+    /// Loads a scene of a configuration by its name.
+    ///
+    /// # Errors
+    /// Fails as [`PlanScene::load`] does.
+    pub fn of_folder(
+        folder: &Folder,
+        name: &str,
+        omega: Option<Extent>,
+    ) -> anyhow::Result<PlanScene> {
+        let path = &folder.path(name);
+        let text = scene_text(folder, name)
+            .map_err(|error| anyhow!("{}: not readable: {error}", path.display()))?;
+        let (scene, format) = read_scene(path, &text)?;
+        let made = Self::assembled(path, (&scene, &text, format), omega)?;
+        let name = name.to_owned();
+        Ok(PlanScene { name, ..made })
+    }
+
+    fn assembled(
+        path: &Path,
+        (scene, text, format): (&Scene, &str, Format),
+        omega: Option<Extent>,
+    ) -> anyhow::Result<PlanScene> {
+        let named = || path.display().to_string();
+        let tables = Tables::read(text, format).with_context(named)?;
+        let joined = joined(scene)?;
+        let mut guided = run_in_each_other(scene, &tables);
         guided.extend(joined.iter().map(|(a, b)| Guided {
             a: *a,
             b: *b,
             axis: None,
         }));
         let made = |tolerance| {
-            Assembly::new(elements(&scene), omega, tolerance, guided.clone()).with_context(named)
+            Assembly::new(elements(scene), omega, tolerance, guided.clone()).with_context(named)
         };
         let assembly = made(Tolerance::default())?;
         let local = Interference::local(&assembly).with_context(named)?;
@@ -71,7 +100,7 @@ impl PlanScene {
             };
         }
         Ok(PlanScene {
-            path: path.to_owned(),
+            name: String::new(),
             priority: plan::priority(&mates),
             groups: groups(&assembly, &joined),
             assembly,

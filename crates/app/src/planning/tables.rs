@@ -1,6 +1,6 @@
 //! The tables of a scene file that only plans and the guard apply: actuators, pairs and mates.
 //!
-//! The reader of scenes has already checked actuators and pairs; mates are checked here.
+//! The reader of scenes has already checked each entry.
 
 use anyhow::Context;
 use lpm::scene::Format;

@@ -128,8 +128,9 @@ impl Service {
     pub fn run(mut self, outer: &mut dyn Subscriber) -> anyhow::Result<Exit> {
         let source = self.source.clone();
         let asked = std::mem::replace(&mut self.asked, mpsc::channel(1).1);
+        let _signals = self.controls.stop_on_signals()?;
+        let _sending = super::sending::start(&self.files, &self.controls)?;
         let exit = super::block_on(&source, async {
-            self.controls.stop_on_signals();
             tokio::spawn(self.router.clone().work(asked));
             tokio::spawn(notify::notify_systemd(self.controls.clone()));
             self.work(outer).await

@@ -2,6 +2,7 @@
 
 use crate::controls::Controls;
 use crate::order::Files;
+use crate::planning::ToolingPlanner;
 use anyhow::Context;
 use machine::view::{Mimic, OrderRequest};
 use page::Listener;
@@ -41,6 +42,7 @@ impl Page {
             traffic: ::page::Traffic::new(controls.traffic()),
             db: files.db.clone(),
             config: files.config.clone(),
+            plans: Arc::new(ToolingPlanner::new(&files.config)),
             orders,
         };
         let (ended, seen) = watch::channel(false);

@@ -51,8 +51,8 @@ pub fn run(
         context: LotContext::new(&plant, (order, &recipe), &source, Purpose::Lot),
         controls: &controls,
     };
+    let _signals = controls.stop_on_signals()?;
     super::block_on(&source, async {
-        controls.stop_on_signals();
         let (onlooker, events) = mpsc::unbounded_channel();
         let (orders, asked) = mpsc::channel(1);
         let stop = Arc::clone(&controls.stop);

@@ -1,10 +1,10 @@
-//! The last traffic of a link; each message carries the number of its program and its generation.
+//! The last traffic of a link, and its health; each message carries the number of its program and its generation.
 
 use super::super::log::Log;
-use super::super::{Direction, arrow, escaped};
-use std::collections::VecDeque;
+use super::super::{Direction, Histogram, arrow, escaped};
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
-use units::RigTime;
+use units::{RigTime, Span};
 
 /// Number of messages that the log keeps.
 const MESSAGES: usize = 1000;
@@ -16,10 +16,12 @@ const KEPT: usize = 160;
 pub struct Traffic {
     /// Number of the program, from 1.
     pub program: u64,
-    at: RigTime,
+    /// Rig time at which the message, or the piece, was sent or received.
+    pub at: RigTime,
     /// Number of resynchronisations before this message.
     generation: u64,
-    direction: Direction,
+    /// Whether the program sent the message or received it.
+    pub direction: Direction,
     /// Beginning of the bytes.
     bytes: Vec<u8>,
     /// Number of bytes of the whole message.
@@ -44,31 +46,70 @@ impl Traffic {
     }
 }
 
+impl Traffic {
+    /// Returns the kept bytes as text, escaped, and the length of a longer message.
+    pub fn text(&self) -> String {
+        let text = escaped(&self.bytes).replace("\\x0A", "\\n");
+        match self.length > self.bytes.len() {
+            true => format!("{text} ... {} bytes", self.length),
+            false => text,
+        }
+    }
+}
+
 impl fmt::Display for Traffic {
     /// Writes time in microseconds, program and generation, direction (`>` sent, `<` received, `~` discarded), and
     /// bytes.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (at, way) = (self.at.0, arrow(self.direction));
         let (program, generation) = (self.program, self.generation);
-        let text = escaped(&self.bytes).replace("\\x0A", "\\n");
-        write!(f, "{at} {program}.{generation} {way} {text}")?;
-        match self.length > self.bytes.len() {
-            true => write!(f, " ... {} bytes", self.length),
-            false => Ok(()),
-        }
+        let text = self.text();
+        write!(f, "{at} {program}.{generation} {way} {text}")
     }
 }
 
-/// The last messages of a link.
+/// Health of a link, counted since its task started.
 #[derive(Debug, Clone, Default)]
-pub struct Ring(VecDeque<Traffic>);
+pub struct LinkHealth {
+    /// Programs that have begun, safe programs included.
+    pub programs: u64,
+    /// Failed programs by the code of the failure, one of [`scpi::Failure::CODES`].
+    pub failures: BTreeMap<&'static str, u64>,
+    /// Times from query to whole reply.
+    pub latency: Histogram,
+    /// Identity of the instrument; `None` before the first answer to `*IDN?`.
+    pub identity: Option<String>,
+}
+
+/// The last messages and the health of a link.
+#[derive(Debug, Clone, Default)]
+pub struct Ring {
+    messages: VecDeque<Traffic>,
+    health: LinkHealth,
+}
 
 impl Ring {
     pub(super) fn add(&mut self, entry: Traffic) {
-        if self.0.len() >= MESSAGES {
-            self.0.pop_front();
+        if self.messages.len() >= MESSAGES {
+            self.messages.pop_front();
         }
-        self.0.push_back(entry);
+        self.messages.push_back(entry);
+    }
+
+    pub(super) fn begun(&mut self) {
+        self.health.programs += 1;
+    }
+
+    /// Counts the end of a program.
+    pub(super) fn ended(&mut self, failure: Option<&'static str>, identity: Option<String>) {
+        if let Some(code) = failure {
+            *self.health.failures.entry(code).or_default() += 1;
+        }
+        self.health.identity = identity;
+    }
+
+    pub(super) fn answered(&mut self, latency: Span) {
+        self.health.latency.add(latency);
     }
 }
 
@@ -78,6 +119,11 @@ pub type LinkLog = Log<Ring>;
 impl LinkLog {
     /// Returns a copy of the traffic, oldest first.
     pub fn traffic(&self) -> Vec<Traffic> {
-        self.records().0.iter().cloned().collect()
+        self.records().messages.iter().cloned().collect()
+    }
+
+    /// Returns a copy of the health.
+    pub fn health(&self) -> LinkHealth {
+        self.records().health.clone()
     }
 }

@@ -8,7 +8,7 @@ mod message;
 mod task;
 
 use super::{Direction, OpenPort, Pace, Port, Timer, escaped, open_serial_with};
-pub use log::{LinkLog, Traffic};
+pub use log::{LinkHealth, LinkLog, Traffic};
 pub use message::message;
 use scpi::{
     Failure, Flow, Form, LinkAddress, LinkSettings, Move, Program, Question, Raw, Reader, Reply,
@@ -93,6 +93,19 @@ impl Link {
         start: fn(&mut Session, Program) -> Move,
     ) -> Result<Vec<Reply>, Failure> {
         self.programs += 1;
+        self.log.write(|it| it.begun());
+        let outcome = self.steps(program, start).await;
+        let failure = outcome.as_ref().err().map(Failure::code);
+        let identity = self.session.identity().map(str::to_owned);
+        self.log.write(move |it| it.ended(failure, identity));
+        outcome
+    }
+
+    async fn steps(
+        &mut self,
+        program: Program,
+        start: fn(&mut Session, Program) -> Move,
+    ) -> Result<Vec<Reply>, Failure> {
         let limit = self.session.settings().longest(&program);
         let deadline = self.pace.now() + limit;
         let mut next = start(&mut self.session, program);
@@ -211,7 +224,8 @@ impl Link {
         if question.strict && self.strays().await? {
             return Err(Failure::OutOfStep { command: command() });
         }
-        let deadline = self.pace.now() + question.limit;
+        let asked_at = self.pace.now();
+        let deadline = asked_at + question.limit;
         if !question.bytes.is_empty() {
             self.reader.clear();
             self.write(&question.bytes, deadline).await?;
@@ -223,6 +237,8 @@ impl Link {
         let (form, tail) = (question.form, question.tail.as_deref());
         let found = loop {
             if let Some(found) = self.reader.take_with_tail(form, tail).map_err(malformed)? {
+                let latency = self.pace.now().since(asked_at);
+                self.log.write(move |it| it.answered(latency));
                 break found;
             }
             let Some(piece) = self.piece(deadline).await? else {

@@ -1,10 +1,16 @@
-//! The task of an instrument: runs one program at a time; a later request ends the one under way.
+//! The task of an instrument: runs one program at a time; a later request ends the one under way. When nobody sends
+//! requests any more, it makes the instrument safe.
 
 use super::Link;
-use crate::Pace;
+use crate::{Pace, Timer};
 use scpi::{Failure, Program, Reply};
 use tokio::sync::mpsc;
-use units::RigTime;
+use units::{RigTime, Span};
+
+/// Longest time for the safe program after the last request.
+const SAFE_WITHIN: Span = Span::ms(5_000);
+/// Tries of the safe program after the last request.
+const SAFE_TRIES: u8 = 2;
 
 /// How a program starts on a link that must be brought into step first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,40 +43,94 @@ pub struct ProgramAnswer {
     pub outcome: Result<Vec<Reply>, Failure>,
 }
 
-/// Runs programs until one of the channels closes. A request that arrives while a program runs ends that program, which
-/// then has no answer; any other request has exactly one.
+/// Runs programs until one of the channels closes, then the program `safe` if the output may be on: however the cycle
+/// ends, it leaves no source on. A request that arrives while a program runs ends that program, which then has no answer;
+/// any other request has exactly one.
+///
+/// # Errors
+/// Fails when the output may still be on: the safe program fails twice, or does not end in time.
 pub async fn serve(
-    mut link: Link,
+    link: Link,
     pace: Pace,
-    mut requests: mpsc::Receiver<ProgramRequest>,
+    requests: mpsc::Receiver<ProgramRequest>,
     answers: mpsc::Sender<ProgramAnswer>,
-) {
-    let mut next = requests.recv().await;
-    while let Some(request) = next.take() {
-        let ticket = request.ticket;
-        let outcome = tokio::select! {
-            biased;
-            later = requests.recv() => {
-                next = later;
-                continue;
-            }
-            outcome = run(&mut link, request) => outcome,
-        };
-        let answer = ProgramAnswer {
-            ticket,
-            answered_at: pace.now(),
-            outcome,
-        };
-        if answers.send(answer).await.is_err() {
-            return;
-        }
-        next = requests.recv().await;
+    safe: Program,
+) -> Result<(), Failure> {
+    let mut task = Task {
+        link,
+        may_be_on: false,
+    };
+    task.run_all(pace, requests, answers).await;
+    match task.may_be_on {
+        true => task.make_safe(pace, &safe).await,
+        false => Ok(()),
     }
 }
 
-async fn run(link: &mut Link, request: ProgramRequest) -> Result<Vec<Reply>, Failure> {
-    match request.start {
-        Start::SetUp => link.run(request.program).await,
-        Start::Safe => link.make_safe(request.program).await,
+struct Task {
+    link: Link,
+    /// True when a program may have left the output on since the last safe program.
+    may_be_on: bool,
+}
+
+impl Task {
+    async fn run_all(
+        &mut self,
+        pace: Pace,
+        mut requests: mpsc::Receiver<ProgramRequest>,
+        answers: mpsc::Sender<ProgramAnswer>,
+    ) {
+        let mut next = requests.recv().await;
+        while let Some(request) = next.take() {
+            let ticket = request.ticket;
+            let outcome = tokio::select! {
+                biased;
+                later = requests.recv() => {
+                    next = later;
+                    continue;
+                }
+                outcome = self.run(request) => outcome,
+            };
+            let answer = ProgramAnswer {
+                ticket,
+                answered_at: pace.now(),
+                outcome,
+            };
+            if answers.send(answer).await.is_err() {
+                return;
+            }
+            next = requests.recv().await;
+        }
+    }
+
+    async fn run(&mut self, request: ProgramRequest) -> Result<Vec<Reply>, Failure> {
+        match request.start {
+            Start::SetUp => {
+                self.may_be_on |= !request.program.steps.is_empty();
+                self.link.run(request.program).await
+            }
+            Start::Safe => {
+                let outcome = self.link.make_safe(request.program).await;
+                self.may_be_on = outcome.is_err();
+                outcome
+            }
+        }
+    }
+
+    async fn make_safe(&mut self, pace: Pace, safe: &Program) -> Result<(), Failure> {
+        let end = pace.now() + SAFE_WITHIN;
+        let timer = Timer::new(pace);
+        let mut outcome = Ok(());
+        for _ in 0..SAFE_TRIES {
+            outcome = tokio::select! {
+                biased;
+                outcome = self.link.make_safe(safe.clone()) => outcome.map(|_| ()),
+                () = timer.until(end) => return Err(Failure::Overdue { limit: SAFE_WITHIN }),
+            };
+            if outcome.is_ok() {
+                break;
+            }
+        }
+        outcome
     }
 }

@@ -1,4 +1,4 @@
-//! Keys of `golden.toml`.
+//! Keys of `golden.toml`, and of the certificate of a rack.
 
 use machine::dut::em_relay::keys::reference_part::PART;
 use machine::form::{Form, Key, from_to, key};
@@ -8,3 +8,6 @@ pub const FILE: &[Key] = keys! {
     key("reference_temperature_c", from_to(-40.0, 85.0, "C"), "gauge", "temperature of the certified values");
     key("golden", Form::List(&Form::Table(PART)), "gauge", "the reference parts");
 };
+
+/// All keys of the certificate of a rack, `rack.toml`.
+pub use machine::dut::thermostat::keys::CERTIFICATE;

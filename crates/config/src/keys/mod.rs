@@ -6,6 +6,7 @@ macro_rules! keys {
 }
 
 pub mod card;
+pub mod fleet;
 pub mod golden;
 pub mod instrument;
 pub mod lot;

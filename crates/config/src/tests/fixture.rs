@@ -2,6 +2,7 @@
 //! name.
 
 use super::RIG;
+use super::rack::RACK_RIG;
 use crate::{Folder, Plant, load_recipe, recipe_names};
 use machine::dut::FIXTURES;
 use machine::dut::Kind;
@@ -149,15 +150,15 @@ fn the_machine_resolves_without_the_coil_board() {
     let wiring = Plant::load(&copy.path().into()).unwrap().wiring;
     assert_eq!((wiring.lines.len(), wiring.modules.len()), (1, 4));
     assert_eq!(wiring.measuring_lines(), []);
-    for point in DigitalIn::ALL {
+    for point in DigitalIn::OF_FEEDER {
         let handle = wiring.digital_input(point.name()).unwrap();
         assert_eq!(handle, (*point).into());
     }
-    for point in DigitalOut::ALL {
+    for point in DigitalOut::OF_FEEDER {
         let handle = wiring.digital_output(point.name()).unwrap();
         assert_eq!(handle.of_machine(), Some(*point));
     }
-    let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
+    let beams = wiring.axis().bins().map(|bin| wiring.axis().beam(bin));
     assert!(
         beams
             .map(|beam| wiring.input_name(beam))
@@ -165,7 +166,7 @@ fn the_machine_resolves_without_the_coil_board() {
     );
     assert_eq!(
         wiring.digital_inputs().count(),
-        DigitalIn::COUNT + wiring.axis.bins().count()
+        DigitalIn::OF_FEEDER.len() + wiring.axis().bins().count()
     );
     assert_eq!(
         wiring.emergency_stop_line(),
@@ -208,7 +209,7 @@ fn a_recipe_needs_only_the_points_it_reads() {
 
 #[test]
 fn a_rig_of_each_fixture_wires_every_declared_point() {
-    let rigs = [RIG, SSR_RIG].map(|it| toml::from_str::<Table>(it).unwrap());
+    let rigs = [RIG, SSR_RIG, RACK_RIG].map(|it| toml::from_str::<Table>(it).unwrap());
     assert_eq!(rigs.len(), FIXTURES.len());
     for (kind, rig) in FIXTURES.iter().zip(&rigs) {
         let outputs = kind.digital_out.iter().map(|it| ("digital_out", it.name));

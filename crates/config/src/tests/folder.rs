@@ -151,7 +151,7 @@ fn init_writes_every_file_to_new_and_empty_directories() {
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&new), mode(&folder.path().join("plant")));
     let entries = |dir: &Path| fs::read_dir(dir).unwrap().count();
-    assert_eq!((entries(new.parent().unwrap()), entries(&empty)), (1, 10));
+    assert_eq!((entries(new.parent().unwrap()), entries(&empty)), (1, 11));
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn init_adds_profiles_and_explanations_to_a_rig() {
     assert!(written.contains_key("instruments/smu-2450.toml") && written.contains_key("README.md"));
     check_all(&Folder::Directory(dir)).unwrap();
     let unknown = init(&folder.path().join("other"), "none").unwrap_err();
-    let expected = "found rig \"none\", expected one of jzc-22f, ssr";
+    let expected = "found rig \"none\", expected one of jzc-22f, ssr, thermostat";
     assert_eq!(unknown.to_string(), expected);
 }
 

@@ -51,7 +51,7 @@ fn a_program_gets_its_arguments() {
     assert_eq!(program.steps[2], Step::send(":WAV:STOP 20000"));
     let (command, form, limit) = (
         ":WAV:DATA?".to_owned(),
-        Form::Block(100_000),
+        Form::Block(200_000),
         Some(Span::ms(3000)),
     );
     assert_eq!(
@@ -86,7 +86,7 @@ fn a_program_gets_its_arguments() {
             .program("wave", &[])
             .unwrap_err()
             .to_string()
-            .contains("arm, capture, complete, force_trigger, state, waveform")
+            .contains("arm, capture, capture_all, complete, force_trigger, state, waveform")
     );
 }
 

@@ -83,6 +83,18 @@ fn two_instruments_never_share_a_link() {
 }
 
 #[test]
+fn a_serial_port_is_one_link_at_any_rate() {
+    let both = TWO
+        .replace("tcp:192.168.10.14:5025", "serial:/dev/ttyUSB3:9600")
+        .replace(
+            "gpib-tcp:192.168.10.15:1234:9",
+            "serial:/dev/ttyUSB3:115200",
+        );
+    let found = Copy::with("rig.toml", |rig| format!("{rig}{both}")).refused();
+    assert!(found.contains("expected a link of its own"), "{found}");
+}
+
+#[test]
 fn an_instrument_never_shares_the_port_of_a_line() {
     let found = with("tcp:192.168.10.14:5025", "serial:/dev/ttyUSB0:9600").refused();
     assert!(

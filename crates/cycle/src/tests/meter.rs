@@ -22,11 +22,16 @@ set_up = [{ send = "*RST" }]
 safe = [{ send = ":OUTP OFF" }]
 program.value.steps = [{ ask = "VALUE?", reply = "number" }]
 program.hang.steps = [{ ask = "HANG?", reply = "number" }]
+program.over.steps = [{ ask = "OVER?", reply = "number" }]
+program.refused.steps = [{ send = ":WRONG" }]
 program.late.steps = [{ ask = "LATE?", reply = "number" }]
 program.slow.steps = [{ ask = "SLOW?", reply = "number", timeout_ms = 2000 }]
 program.stuck.steps = [{ ask = "HANG?", reply = "number", timeout_ms = 60000 }]
 program.level = { steps = [{ send = ":LEV {level_v}" }, { ask = ":LEV?", reply = "number" }], argument.level_v = { low = 0.0, high = 5.0 } }
 "#;
+
+/// First entry of an empty error queue.
+const NO_ERROR: &str = "0,\"No error\"";
 
 /// Reply that comes after the time of its query.
 pub const LATE: f64 = 777.0;
@@ -72,6 +77,7 @@ async fn serve(meter: Meter, stream: DuplexStream, pace: Pace, log: Log) {
     let (reader, mut writer) = tokio::io::split(stream);
     let mut lines = BufReader::new(reader).lines();
     let (mut left, mut values, mut level) = (String::from("0"), 0, String::from("0"));
+    let mut error = NO_ERROR;
     while let Ok(Some(line)) = lines.next_line().await {
         if meter.dead.load(Ordering::Acquire) {
             continue;
@@ -81,7 +87,11 @@ async fn serve(meter: Meter, stream: DuplexStream, pace: Pace, log: Log) {
             "*IDN?" => (Span::ms(1), meter.identity.to_owned()),
             "*ESE?" => (Span::ms(1), left.clone()),
             "*ESR?" => (Span::ms(1), "0".to_owned()),
-            "SYST:ERR?" => (Span::ms(1), "0,\"No error\"".to_owned()),
+            "SYST:ERR?" => {
+                let error = std::mem::replace(&mut error, NO_ERROR);
+                (Span::ms(1), error.to_owned())
+            }
+            "OVER?" => (Span::ms(1), "9.9E37".to_owned()),
             "VALUE?" => {
                 values += 1;
                 (Span::ms(1), values.to_string())
@@ -92,6 +102,8 @@ async fn serve(meter: Meter, stream: DuplexStream, pace: Pace, log: Log) {
             other => {
                 if let Some(number) = other.strip_prefix("*ESE ") {
                     number.clone_into(&mut left);
+                } else if other == ":WRONG" {
+                    error = "-113,\"Undefined header\"";
                 } else if let Some(number) = other.strip_prefix(":LEV ") {
                     number.clone_into(&mut level);
                 }

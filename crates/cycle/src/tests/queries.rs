@@ -1,6 +1,7 @@
 //! Queries of a measuring job.
 
 use super::*;
+use machine::instrument::conversion::Conversion;
 use machine::station::catalogue::AlarmCode;
 use texts::Lang;
 
@@ -72,6 +73,34 @@ fn an_instrument_that_keeps_failing_raises_an_alarm() {
 }
 
 #[test]
+fn a_program_that_always_fails_raises_an_alarm() {
+    for program in ["hang", "refused"] {
+        in_virtual_time(meters(), async |mut bench| {
+            for tries in 1..=bench.cycle.wiring.bus.tries {
+                assert!(bench.cycle.bus_alarms.is_empty(), "{tries}");
+                let good = bench.job(vec![bench.query("meter", "value")]).await;
+                assert_eq!(good.trouble, None);
+                bench.job(vec![bench.query("meter", program)]).await;
+            }
+            let codes: Vec<AlarmCode> = bench.cycle.bus_alarms.iter().map(|it| it.code).collect();
+            assert_eq!(codes, [AlarmCode::InstrumentTrouble], "{program}");
+        });
+    }
+}
+
+#[test]
+fn over_range_of_every_part_is_no_alarm() {
+    in_virtual_time(meters(), async |mut bench| {
+        for _ in 0..=bench.cycle.wiring.bus.tries {
+            let done = bench.job(vec![bench.query("meter", "over")]).await;
+            let trouble = done.trouble.unwrap().say(Lang::En);
+            assert!(trouble.contains("OVER?"), "{trouble}");
+        }
+        assert!(bench.cycle.bus_alarms.is_empty());
+    });
+}
+
+#[test]
 fn a_late_reply_never_reaches_the_next_query() {
     in_virtual_time(meters(), async |mut bench| {
         bench.job(vec![bench.query("meter", "value")]).await;
@@ -127,5 +156,25 @@ fn the_answer_to_a_dropped_job_is_no_answer() {
         assert!(bench.cycle.job_done.is_none());
         let done = bench.job(vec![bench.query("meter", "value")]).await;
         assert_eq!(done.delivered.len(), 1);
+    });
+}
+
+#[test]
+fn a_conversion_ends_its_job_in_no_time() {
+    in_virtual_time(meters(), async |mut bench| {
+        bench.job(vec![bench.query("meter", "value")]).await;
+        let began = bench.pace.now();
+        let conversion = Conversion::new(|all| all.len());
+        bench.cycle.start(Job::Convert(conversion, Vec::new()));
+        let done = loop {
+            if let Some(done) = bench.cycle.job_done.take() {
+                break done;
+            }
+            bench.turn().await;
+        };
+        assert_eq!((done.at, done.trouble), (began, None));
+        assert_eq!(done.converted.unwrap().get(), Some(&0_usize));
+        let next = bench.job(vec![bench.query("meter", "value")]).await;
+        assert_eq!((next.delivered.len(), next.converted), (1, None));
     });
 }

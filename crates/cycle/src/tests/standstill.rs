@@ -115,12 +115,93 @@ fn a_dead_instrument_delays_the_end_by_seconds_only() {
         bench.job(vec![bench.query("meter", "value")]).await;
         dead.store(true, Ordering::Release);
         let began = bench.pace.now();
-        bench.cycle.make_instruments_safe().await;
+        assert!(
+            !bench.cycle.make_instruments_safe().await,
+            "a dead one is not safe"
+        );
         let took = bench.pace.now().since(began);
         assert!(took <= Span::ms(5_100), "{took:?}");
         let Event::Alarm(alarm, _) = bench.events.recv().await.unwrap() else {
             panic!("no alarm");
         };
         assert_eq!(alarm.code, AlarmCode::InstrumentNotSafe);
+    });
+}
+
+/// Drops the cycle, as a failed assertion does; returns how each instrument ended.
+async fn abandoned(bench: Bench) -> (Log, Vec<bool>) {
+    let Bench {
+        cycle, log, tasks, ..
+    } = bench;
+    drop(cycle);
+    let mut ends = Vec::new();
+    for task in tasks {
+        ends.push(task.await.unwrap().is_ok());
+    }
+    (log, ends)
+}
+
+#[test]
+fn an_abandoned_instrument_makes_itself_safe() {
+    for program in ["value", "stuck"] {
+        in_virtual_time(meters(), async |mut bench| {
+            assert_eq!(prepared(&mut bench).await, []);
+            let query = bench.query("meter", program);
+            bench.cycle.start(Job::Query(vec![query]));
+            while bench.log.count("VALUE?") + bench.log.count("HANG?") == 0 {
+                bench.turn().await;
+            }
+            let (log, ends) = abandoned(bench).await;
+            assert_eq!(ends, [true, true], "{program}");
+            assert_eq!(log.count("meter :OUTP OFF"), 1, "{program}");
+            assert_eq!(log.count("source :OUTP OFF"), 0, "it has run no program");
+        });
+    }
+}
+
+#[test]
+fn a_cut_off_safe_program_runs_again() {
+    in_virtual_time(meters(), async |mut bench| {
+        bench.job(vec![bench.query("meter", "value")]).await;
+        let (pace, log) = (bench.pace, bench.log.clone());
+        let sent = async {
+            while log.count("meter :OUTP OFF") == 0 {
+                pace.sleep_until(pace.now() + Span(100)).await;
+            }
+        };
+        tokio::select! {
+            biased;
+            () = sent => {}
+            _ = bench.cycle.make_instruments_safe() => panic!("confirmed before it was cut off"),
+        }
+        let (log, ends) = abandoned(bench).await;
+        assert_eq!(ends, [true, true]);
+        assert_eq!(log.count("meter :OUTP OFF"), 2);
+    });
+}
+
+#[test]
+fn an_instrument_made_safe_is_left_alone() {
+    in_virtual_time(meters(), async |mut bench| {
+        bench.job(vec![bench.query("meter", "value")]).await;
+        assert!(bench.cycle.make_instruments_safe().await);
+        let (log, ends) = abandoned(bench).await;
+        assert_eq!(ends, [true, true]);
+        assert_eq!(log.count("meter :OUTP OFF"), 1);
+    });
+}
+
+#[test]
+fn a_dead_abandoned_instrument_ends_in_seconds() {
+    let meters = meters();
+    let dead = Arc::clone(&meters[0].dead);
+    in_virtual_time(meters, async |mut bench| {
+        bench.job(vec![bench.query("meter", "value")]).await;
+        dead.store(true, Ordering::Release);
+        let (pace, began) = (bench.pace, bench.pace.now());
+        let (_, ends) = abandoned(bench).await;
+        assert_eq!(ends, [false, true]);
+        let took = pace.now().since(began);
+        assert!(took <= Span::ms(5_100), "{took:?}");
     });
 }

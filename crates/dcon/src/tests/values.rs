@@ -35,6 +35,41 @@ fn a_reading_at_full_scale_hex_is_no_number() {
 }
 
 #[test]
+fn temperatures_in_hex_are_shares_of_full_scale() {
+    for (code, text, celsius) in [
+        (0x22, ">3600", Some(84.375)),
+        (0x22, ">7FFE", Some(199.9878)),
+        (0x22, ">0001", Some(0.0061)),
+        (0x20, ">E000", Some(-25.0)),
+        (0x0F, ">0800", Some(85.75)),
+        (0x0F, ">E6D0", Some(-269.9785)),
+        (0x22, ">7FFF", None),
+        (0x22, ">FFFF", None),
+        (0x22, ">0000", None),
+        (0x22, ">8000", None),
+        (0x22, ">FFF0", None),
+    ] {
+        let form = InputForm::three(DataFormat::Hex, TypeCode(code));
+        let found = read_one(form, text).unwrap().in_units(form.range);
+        let same = match (found, celsius) {
+            (Some(found), Some(celsius)) => (found - celsius).abs() < 1e-3,
+            (found, celsius) => found == celsius,
+        };
+        assert!(same, "{code:02X} {text}: {found:?}");
+    }
+}
+
+#[test]
+fn short_codes_of_broken_sensors_are_no_numbers() {
+    let form = InputForm::three(DataFormat::Engineering, TypeCode(0x22));
+    for text in [">+9999", ">-0000", ">+9999.9", ">-9999.9"] {
+        let value = read_one(form, text).ok();
+        let number = value.and_then(|it| it.in_units(form.range));
+        assert_eq!(number, None, "{text}");
+    }
+}
+
+#[test]
 fn a_reading_beyond_its_range_is_refused() {
     for (form, text) in [
         (VOLTS, ">+99.000"),

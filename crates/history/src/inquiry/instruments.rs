@@ -26,7 +26,7 @@ pub struct Instruments {
 /// A calibration, and until when it is valid.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct CalibrationStatus {
-    /// Nominal coil voltage of its reference parts, V.
+    /// Nominal coil voltage of its reference parts, V; `None` for a calibration of the rack.
     pub nominal_v: Option<f64>,
     /// Time of the calibration.
     pub made: Moment,
@@ -110,7 +110,7 @@ pub fn instruments(
 
 fn held(record: CalibrationRecord, now_us: i64) -> CalibrationStatus {
     let body: serde_json::Value = serde_json::from_str(&record.body).unwrap_or_default();
-    let nominal_v = body["nominal_v"].as_f64();
+    let nominal_v = body["nominal_v"].as_f64().filter(|it| *it > 0.0);
     let factors = factors(body).into_iter().map(|it| ShownFactor {
         name: it.name,
         unit: it.unit,

@@ -8,6 +8,7 @@
 //! | alarm list | [`alarms`] |
 //! | lots side by side | [`comparison`] |
 //! | operation process card of a recipe | [`card`] |
+//! | plan for tooling, with its drawings | [`plan`], [`plan_drawing`] |
 //! | spreadsheet with native charts | [`sheet`] |
 //!
 //! A page is one self-contained HTML file for A4 ([`page`]), without scripts, fonts or external pictures; charts are
@@ -22,6 +23,8 @@ mod data_matrix;
 pub mod lot;
 mod page;
 mod pareto;
+pub mod plan;
+pub mod plan_drawing;
 mod plot;
 pub mod sheet;
 mod sheet_cells;

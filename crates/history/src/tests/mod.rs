@@ -13,6 +13,7 @@ mod scans;
 mod side_by_side;
 mod spreadsheet;
 mod suspects;
+mod tooling;
 mod writing;
 
 use super::*;

@@ -36,7 +36,9 @@ fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
 fn relay(recipe: &mut Recipe) -> &mut RelayRecipe {
     match &mut recipe.device {
         DeviceRecipe::EmRelay(relay) => relay,
-        DeviceRecipe::Resistor(_) | DeviceRecipe::Ssr(_) => panic!("a relay"),
+        DeviceRecipe::Resistor(_) | DeviceRecipe::Ssr(_) | DeviceRecipe::Thermostat(_) => {
+            panic!("a relay")
+        }
     }
 }
 

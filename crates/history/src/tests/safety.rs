@@ -182,9 +182,11 @@ fn every_table_is_strict_with_remarked_columns() {
     assert_eq!(
         names.join(" "),
         "alarm alarm_state calibration curve export golden_check inside lot lot_state measurement ordered \
-         parameter part reason recipe reopening retest rig run run_end sample series wear"
+         outbox parameter part reason recipe reopening retest rig row_floor run run_end sample series \
+         sqlite_sequence target tooling_plan tooling_step wear"
     );
-    for (table, sql) in &tables {
+    let own = tables.iter().filter(|(name, _)| name != "sqlite_sequence");
+    for (table, sql) in own {
         assert!(sql.contains(") STRICT"), "{table}");
         let columns = sql.lines().filter(|line| {
             line.starts_with("  ") && line.trim_start().starts_with(|it: char| it.is_lowercase())

@@ -10,7 +10,8 @@ pub const LSB_V: f64 = 2.0 * FULL_SCALE_V / 4096.0;
 /// reserve for the errors of sources, references and input.
 pub const READABLE_V: f64 = 0.98 * FULL_SCALE_V;
 
-/// Accuracies before calibration: half widths, except for fields documented as standard deviations.
+/// Accuracies before calibration: half widths, except for fields documented as standard deviations. Those that
+/// `rig.toml` of a rig with a rack omits, because no source ramps and no counter gates there, are zero.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct AccuracySettings {
     /// Gain error of analog inputs, % of reading.
@@ -20,24 +21,30 @@ pub struct AccuracySettings {
     /// Noise of analog inputs, LSB (standard deviation).
     pub ai_noise_lsb: f64,
     /// Gain error of analog outputs, %.
+    #[serde(default)]
     pub ao_gain_pct: f64,
     /// Offset error of analog outputs, mV at the terminal.
+    #[serde(default)]
     pub ao_offset_mv: f64,
     /// Error of the slope of an analog output while it ramps, %.
+    #[serde(default)]
     pub ao_slope_pct: f64,
     /// Time between two steps of an analog output while it ramps, ms.
     #[serde(default = "AccuracySettings::usual_refresh_ms")]
     pub ao_refresh_ms: f64,
     /// Delay of the counter gates, microseconds.
+    #[serde(default)]
     pub gate_delay_us: f64,
     /// Error of the thermometers, K (standard deviation).
     pub rtd_k: f64,
     /// Difference between the temperatures of part and magazine track, K (standard deviation).
+    #[serde(default)]
     pub part_minus_track_k: f64,
     /// Relative standard uncertainty of `part_minus_track_k` itself, %.
     #[serde(default = "AccuracySettings::usual_part_minus_track_u_pct")]
     pub part_minus_track_u_pct: f64,
     /// Scatter of a threshold from operation to operation, for a 12 V coil, mV (standard deviation).
+    #[serde(default)]
     pub operation_scatter_mv: f64,
     /// Conversions of an I-7017F in fast mode, all enabled channels together, per second.
     pub conversions_per_s: f64,

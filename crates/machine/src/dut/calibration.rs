@@ -1,6 +1,6 @@
 //! Calibration of a rig, whatever kind of device it tests: dates and factors.
 
-use super::em_relay;
+use super::{em_relay, thermostat};
 use crate::gauge::factor::Named;
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 #[serde(untagged)]
 pub enum Calibration {
     /// Factors of the coil board, for relays.
-    EmRelay(em_relay::Calibration),
+    EmRelay(Box<em_relay::Calibration>),
+    /// Certificate of thermometer chain and sockets, for temperature relays.
+    Thermostat(thermostat::certificate::Calibration),
 }
 
 impl Calibration {
@@ -17,6 +19,7 @@ impl Calibration {
     pub fn facts(&self) -> CalibrationFacts {
         match self {
             Self::EmRelay(relay) => relay.facts(),
+            Self::Thermostat(of_rack) => of_rack.facts(),
         }
     }
 }
@@ -30,7 +33,7 @@ pub struct CalibrationFacts {
     pub due_at_us: i64,
     /// True on a simulated rig.
     pub is_simulated: bool,
-    /// Nominal voltage of the parts for which the calibration holds, V.
+    /// Nominal voltage of the parts for which the calibration holds, V; 0 when it holds for every part.
     pub nominal_v: f64,
     /// Voltage factor of the supply range in which the calibration was made, see
     /// [`crate::rig::supply::SupplyRange::factor`].

@@ -5,7 +5,7 @@
 
 use super::Kind;
 use super::verdict::Bin;
-use super::{em_relay, resistor, ssr};
+use super::{em_relay, resistor, ssr, thermostat};
 use crate::gauge::repetition::MeanOf;
 use crate::instrument::curve::Curve;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -80,6 +80,8 @@ pub enum Characteristic {
     Resistor(resistor::Parameter),
     /// Characteristic of a solid-state relay.
     Ssr(ssr::Parameter),
+    /// Characteristic of a temperature relay.
+    Thermostat(thermostat::Parameter),
 }
 
 impl Characteristic {
@@ -122,6 +124,7 @@ impl Deref for Characteristic {
             Self::EmRelay(parameter) => parameter,
             Self::Resistor(parameter) => parameter,
             Self::Ssr(parameter) => parameter,
+            Self::Thermostat(parameter) => parameter,
         }
     }
 }

@@ -2,6 +2,7 @@
 //! earlier parts.
 
 use super::accuracy::AccuracySettings;
+use super::batch::{BatchOrder, BatchTest};
 use super::calibration::Calibration;
 use super::em_relay;
 use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
@@ -10,8 +11,11 @@ use super::promise::Broken;
 use super::record::TestRecord;
 use super::resistor;
 use super::ssr;
+use super::thermostat;
+use super::thermostat::certificate::Certificate;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
+use crate::rig::point::Thermometer;
 use crate::rig::wiring::Wiring;
 use std::ops::{Deref, DerefMut};
 use texts::Message;
@@ -40,6 +44,8 @@ pub struct Rig<'a> {
     pub accuracy: &'a AccuracySettings,
     /// Reference parts, that is, parts with a certificate.
     pub reference_parts: &'a ReferenceSet,
+    /// Certificate of thermometer chain and sockets, if the plant has one.
+    pub certificate: Option<&'a Certificate>,
 }
 
 /// Which part is tested, and how.
@@ -81,6 +87,23 @@ impl CalibrationFault {
 pub trait DeviceUnderTest {
     /// Begins the test of the part in the nest. The probes must be up.
     fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure;
+
+    /// Begins the test of all parts in a rack, behind its locked door.
+    fn begin_batch(&self, order: &BatchOrder, _now: RigTime) -> Box<dyn BatchTest> {
+        panic!("a kind for a nest gets a batch: {order:?}")
+    }
+
+    /// Returns the acts that cool the rack after a test and after any restart (`on`), or that end the cooling before the
+    /// door is unlocked. They also leave every source of heat off.
+    fn cooling(&self, _on: bool) -> Vec<Act> {
+        Vec::new()
+    }
+
+    /// Returns thermometers in the air around the rack. A rack counts as cool only when one of them has a reading and
+    /// none shows heat: a rack thermometer that stands still must not unlock the door.
+    fn air_thermometers(&self) -> Vec<Thermometer> {
+        Vec::new()
+    }
 
     /// Returns when the calibration in force expires, microseconds since 1970 UTC; `None` for a kind without
     /// calibration.
@@ -180,6 +203,11 @@ pub enum Device {
     Resistor(Box<resistor::Device>),
     /// Solid-state relay.
     Ssr(Box<ssr::Device>),
+    /// Temperature relay.
+    Thermostat(Box<thermostat::Device>),
+    /// A kind for tests of batches.
+    #[cfg(test)]
+    Mock(Box<super::mock::MockDevice>),
 }
 
 impl Deref for Device {
@@ -190,6 +218,9 @@ impl Deref for Device {
             Self::EmRelay(relay) => relay.as_ref(),
             Self::Resistor(resistor) => resistor.as_ref(),
             Self::Ssr(ssr) => ssr.as_ref(),
+            Self::Thermostat(thermostat) => thermostat.as_ref(),
+            #[cfg(test)]
+            Self::Mock(mock) => mock.as_ref(),
         }
     }
 }
@@ -200,6 +231,9 @@ impl DerefMut for Device {
             Self::EmRelay(relay) => relay.as_mut(),
             Self::Resistor(resistor) => resistor.as_mut(),
             Self::Ssr(ssr) => ssr.as_mut(),
+            Self::Thermostat(thermostat) => thermostat.as_mut(),
+            #[cfg(test)]
+            Self::Mock(mock) => mock.as_mut(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::characteristic::Characteristic;
 use super::verdict::Bin;
-use super::{Kind, em_relay, resistor, ssr};
+use super::{Kind, em_relay, resistor, ssr, thermostat};
 use crate::gauge::Side;
 
 /// Constant data of a finding.
@@ -52,6 +52,8 @@ pub enum Finding {
     Resistor(resistor::Finding),
     /// Finding of the test of a solid-state relay.
     Ssr(ssr::Finding),
+    /// Finding of a test of temperature relays.
+    Thermostat(thermostat::Finding),
 }
 
 impl Finding {
@@ -66,6 +68,7 @@ impl Finding {
             Self::EmRelay(finding) => finding.entry(),
             Self::Resistor(finding) => finding.entry(),
             Self::Ssr(finding) => finding.entry(),
+            Self::Thermostat(finding) => finding.entry(),
         }
     }
 }
@@ -79,6 +82,12 @@ impl From<em_relay::Finding> for Finding {
 impl From<resistor::Finding> for Finding {
     fn from(finding: resistor::Finding) -> Self {
         Self::Resistor(finding)
+    }
+}
+
+impl From<thermostat::Finding> for Finding {
+    fn from(finding: thermostat::Finding) -> Self {
+        Self::Thermostat(finding)
     }
 }
 

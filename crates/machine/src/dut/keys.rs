@@ -65,6 +65,27 @@ macro_rules! limit {
 }
 pub(crate) use limit;
 
+/// Form of a limit of a quantity that may be negative: as [`limit!`], each side from `-$high` to `$high`.
+macro_rules! signed_limit {
+    ($unit:literal, $high:literal) => {
+        crate::form::Form::Table(&[
+            crate::form::optional(
+                "low",
+                crate::form::from_to(-$high, $high, $unit),
+                "gauge",
+                "least good value",
+            ),
+            crate::form::optional(
+                "high",
+                crate::form::from_to(-$high, $high, $unit),
+                "gauge",
+                "greatest good value",
+            ),
+        ])
+    };
+}
+pub(crate) use signed_limit;
+
 /// Keys of one table, written one per line.
 macro_rules! table {
     ($($key:expr;)+) => { &[$($key),+] };

@@ -4,6 +4,7 @@
 //! [`Reason`] and [`Verdict`], and names no kind.
 
 pub mod accuracy;
+pub mod batch;
 pub mod calibration;
 pub mod card;
 pub mod characteristic;
@@ -13,6 +14,8 @@ pub mod finding;
 pub mod instruments;
 pub mod keys;
 pub mod made_up;
+#[cfg(test)]
+pub mod mock;
 pub mod procedure;
 pub mod promise;
 pub mod prompt;
@@ -22,6 +25,7 @@ pub mod record;
 pub mod rejudge;
 pub mod resistor;
 pub mod ssr;
+pub mod thermostat;
 pub mod verdict;
 
 pub use crate::gauge::Judgement;
@@ -39,7 +43,11 @@ use crate::rig::point::{AnalogInput, Fixture};
 use crate::rig::wiring::Wiring;
 
 /// The fixture points that each kind declares.
-pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE, ssr::points::FIXTURE];
+pub const FIXTURES: &[Fixture] = &[
+    em_relay::points::FIXTURE,
+    ssr::points::FIXTURE,
+    thermostat::points::FIXTURE,
+];
 
 /// Returns the inputs that converters read while the references of any kind are measured. If the controller was cut off
 /// during that measurement, the channel mask of these inputs is still in their modules.
@@ -61,16 +69,19 @@ pub enum Kind {
     Resistor,
     /// Solid-state relay: LED, MOSFET output.
     Ssr,
+    /// Temperature relay: bimetal switch.
+    Thermostat,
 }
 
 impl Kind {
     /// Every kind, in the order of its declaration.
-    pub const ALL: [Self; 3] = [Self::EmRelay, Self::Resistor, Self::Ssr];
+    pub const ALL: [Self; 4] = [Self::EmRelay, Self::Resistor, Self::Ssr, Self::Thermostat];
     /// Names of the kinds in recipes, in the order of [`Self::ALL`].
     pub const NAMES: &'static [&'static str] = &[
         Self::EmRelay.name(),
         Self::Resistor.name(),
         Self::Ssr.name(),
+        Self::Thermostat.name(),
     ];
 
     /// Returns the constant data of the kind.
@@ -79,6 +90,7 @@ impl Kind {
             Self::EmRelay => &em_relay::DEFINITION,
             Self::Resistor => &resistor::DEFINITION,
             Self::Ssr => &ssr::DEFINITION,
+            Self::Thermostat => &thermostat::DEFINITION,
         }
     }
 

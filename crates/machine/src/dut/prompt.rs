@@ -16,6 +16,9 @@ pub enum PromptMoment {
     AfterCalibration,
     /// After the last part of the lot.
     LotEnd,
+    /// While a person loads or unloads a rack. The station makes this prompt; no recipe has it.
+    #[serde(skip_deserializing)]
+    Batch,
 }
 
 /// A prompt.

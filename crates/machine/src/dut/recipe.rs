@@ -6,12 +6,13 @@
 use super::accuracy::AccuracySettings;
 use super::card::Card;
 use super::characteristic::Characteristic;
-use super::device::Rig;
+use super::device::{Made, Rig};
 use super::em_relay::recipe::RelayRecipe;
 use super::made_up::MadeUp;
 use super::prompt::{self, Prompt};
 use super::resistor::recipe::ResistorRecipe;
 use super::ssr::recipe::SsrRecipe;
+use super::thermostat::recipe::ThermostatRecipe;
 use super::{Calibration, Device, Kind};
 use crate::gauge::{Limit, Rule};
 use crate::rig::fault::{Fault, Requirement};
@@ -28,7 +29,7 @@ impl Kind {
     /// Returns the wiring in the supply range that serves `demand`, if there is one, and the points of the kind.
     ///
     /// # Errors
-    /// Fails with the first bin, point or range that the rig does not have.
+    /// Fails on a rig without a feeder, else with the first bin, point or range that the rig does not have.
     pub(super) fn reach<P>(
         self,
         rig: &Rig,
@@ -37,7 +38,12 @@ impl Kind {
     ) -> Result<(Wiring, P), Fault> {
         let wiring = rig.wiring;
         let definition = self.definition();
-        if let Some(missing) = definition.bins.iter().find(|bin| !wiring.axis.has(**bin)) {
+        if wiring.feeder().is_none() {
+            let found = format!("\"{}\"", definition.name);
+            let expected = "a rig with a feeder: rig.toml has [rack]";
+            return Err(Fault::new("kind", found, expected));
+        }
+        if let Some(missing) = definition.bins.iter().find(|bin| !wiring.has_bin(**bin)) {
             let found = format!("\"{}\"", definition.name);
             let expected =
                 format!("a rig with the bins of this kind: rig.toml has no bin.{missing}");
@@ -113,6 +119,17 @@ pub trait KindRecipe {
         stored: Option<Calibration>,
     ) -> Result<Device, MissingPoint>;
 
+    /// Returns the voltage by which a calibration for these parts is stored, V; `None` for parts that need none.
+    fn calibrated_for(&self) -> Option<f64> {
+        self.part().nominal_v
+    }
+
+    /// Returns the calibration that certificates of the plant alone give, without any part; `None` for a kind that is
+    /// calibrated on parts, or without a certificate.
+    fn certified(&self, _rig: &Rig, _made: Made) -> Option<Calibration> {
+        None
+    }
+
     /// Returns every reason why the rig cannot perform the recipe: points, bins and references that `rig.toml` lacks,
     /// keys that ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault>;
@@ -147,6 +164,8 @@ pub enum DeviceRecipe {
     Resistor(ResistorRecipe),
     /// Solid-state relay.
     Ssr(SsrRecipe),
+    /// Temperature relay.
+    Thermostat(ThermostatRecipe),
 }
 
 impl Deref for DeviceRecipe {
@@ -157,6 +176,7 @@ impl Deref for DeviceRecipe {
             Self::EmRelay(relay) => relay,
             Self::Resistor(resistor) => resistor,
             Self::Ssr(ssr) => ssr,
+            Self::Thermostat(thermostat) => thermostat,
         }
     }
 }

@@ -5,12 +5,15 @@ use super::characteristic::Characteristic;
 use super::em_relay::Observed;
 use super::reason::Reason;
 use super::recipe::Recipe;
+use super::ssr::references::Fixture;
+use super::thermostat::device::Lesson;
 use crate::gauge::repetition::mean;
 use crate::gauge::{Judgement, Reading, judge};
 use crate::instrument::act::Spent;
 use crate::instrument::trace::Trace;
 use crate::rig::sample::{CountSample, Origin, Sample};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use texts::Message;
 use units::Span;
 
@@ -43,6 +46,16 @@ pub enum Stop {
     Trouble(Reason),
 }
 
+impl Stop {
+    /// Returns the characteristic whose limit a failure proves exceeded; `None` for a part that is not judged.
+    pub fn proven(&self) -> Option<Characteristic> {
+        match self {
+            Self::Fail(reason) => reason.characteristic(),
+            Self::Void(_) | Self::Trouble(_) => None,
+        }
+    }
+}
+
 /// Observations of a test of one kind, from which the kind learns.
 #[derive(Debug, Clone, Default)]
 pub enum Own {
@@ -51,6 +64,10 @@ pub enum Own {
     Nothing,
     /// Ramps and conditions of an electromagnetic relay.
     EmRelay(Observed),
+    /// What a test of a solid-state relay has measured or used of its fixture.
+    Ssr(Fixture),
+    /// What a batch of temperature relays has shown of chamber and lot.
+    Thermostat(Arc<Lesson>),
 }
 
 /// What a test has measured so far. `T` holds the observations of its kind.
@@ -65,6 +82,9 @@ pub struct TestRecord<T = Own> {
     pub spent: Spent,
     /// Rig time of each stage by its key.
     pub stages: BTreeMap<&'static str, Span>,
+    /// True or false for each characteristic that a test proves at its limits without measuring a value, by the key of
+    /// rows.
+    pub conforms: Vec<(&'static str, bool)>,
     /// Observations of the kind.
     pub own: T,
 }
@@ -79,6 +99,7 @@ impl<T> TestRecord<T> {
             trace: self.trace,
             spent: self.spent,
             stages: self.stages,
+            conforms: self.conforms,
             own: own(self.own),
         }
     }

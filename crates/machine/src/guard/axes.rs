@@ -57,9 +57,18 @@ fn axis_of(settings: &ActuatorSettings) -> Result<Axis, GuardError> {
             });
         }
     };
+    let half = 0.5 * (stroke_mm.1 - stroke_mm.0);
+    if !(0.0..=half).contains(&settings.sensor_off_mm) {
+        return Err(GuardError::Number {
+            path: path("sensor_off_mm"),
+            found: settings.sensor_off_mm,
+            expected: "0 to half the stroke",
+        });
+    }
     Ok(Axis {
         direction: settings.axis.map(|member| member / length),
         stroke_mm,
+        sensor_off_mm: settings.sensor_off_mm,
         rides: settings.rides,
         to_rest: words(&settings.to_rest, settings.id, "rest"),
         to_end: words(&settings.to_end, settings.id, "other"),

@@ -20,6 +20,7 @@ pub(super) struct Question {
     actuators: [(u8, u64, u64, Option<u64>); 8],
     parts: super::situation::PartPlaces,
     size: [u64; 4],
+    granted: u16,
 }
 
 impl Question {
@@ -41,6 +42,7 @@ impl Question {
         Question {
             actuators: Actuator::ALL.map(one),
             parts: situation.parts,
+            granted: situation.granted,
             size: [x, y, z, situation.part_size.pin_length_mm].map(f64::to_bits),
         }
     }

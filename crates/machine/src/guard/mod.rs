@@ -18,6 +18,7 @@
 //!    shows the other's actuator as [`Between`](Position::Between).
 //! 3. A mover of unknown start is swept from the far end of its span.
 //! 4. The guard refuses NaN, a position off its stroke, and a part without size.
+//! 5. A motion with an [`Interlock`] needs its input, whatever the bodies say.
 //!
 //! **Why a cleared motion is clear.** For every combination of true positions that the situation allows, each resting
 //! body lies in its room (`occupancy`) and each moving one in the sweep of its room (`sweep`); the collision core
@@ -37,6 +38,7 @@ mod build;
 mod carried;
 mod drawing;
 mod error;
+mod interlock;
 mod judge;
 mod memory;
 mod motion;
@@ -55,6 +57,7 @@ mod tests;
 pub use actuator::{Actuator, Position};
 pub use drawing::Drawn;
 pub use error::GuardError;
+pub use interlock::{End, Interlock};
 pub use motion::{Cleared, Motion, Stroke};
 pub use refusal::{Blocked, Refusal};
 pub use settings::{
@@ -79,6 +82,7 @@ pub struct Guard {
     scene: Scene,
     space: Space,
     memory: Memory,
+    interlocks: Vec<Interlock>,
 }
 
 impl Guard {
@@ -96,9 +100,21 @@ impl Guard {
             scene,
             space,
             memory: Memory::default(),
+            interlocks: Vec::new(),
         };
         guard.try_every_stroke()?;
         Ok(guard)
+    }
+
+    /// Returns this guard with the interlocks of the plant.
+    #[must_use]
+    pub fn with_interlocks(mut self, interlocks: Vec<Interlock>) -> Guard {
+        assert!(
+            interlocks.len() <= Situation::INTERLOCKS,
+            "too many interlocks"
+        );
+        (self.interlocks, self.memory) = (interlocks, Memory::default());
+        self
     }
 
     /// Clears `motion` in `situation` or refuses it. Equal inputs give equal results; for repeated inputs the guard
@@ -142,7 +158,33 @@ impl Guard {
         self.scene.axis(actuator).stroke_mm
     }
 
+    /// Returns the least distance from an end, mm, at which the sensor of that end goes off; 0 when unknown.
+    pub fn sensor_off_mm(&self, actuator: Actuator) -> f64 {
+        self.scene.axis(actuator).sensor_off_mm
+    }
+
+    /// Returns true when the probes may rise to a part between closed jaws while the pusher returns, once the sensor of
+    /// the extended pusher is off; wherever axis, z and fingers are.
+    pub fn probes_rise_beside_pusher(&mut self, part_size: PartSize) -> bool {
+        let whole = |(from_mm, to_mm)| Position::Between { from_mm, to_mm };
+        let (home_mm, out_mm) = self.stroke_mm(Actuator::Pusher);
+        let left_mm = out_mm - self.sensor_off_mm(Actuator::Pusher);
+        let mut situation =
+            Situation::at_rest(part_size).with(Actuator::Pusher, whole((home_mm, left_mm)));
+        for actuator in [Actuator::JawLeft, Actuator::JawRight] {
+            situation.set(actuator, Position::At(self.stroke_mm(actuator).1));
+        }
+        for actuator in [Actuator::SortAxis, Actuator::SortZ, Actuator::Gripper] {
+            situation.set(actuator, whole(self.stroke_mm(actuator)));
+        }
+        situation.parts.nest = true;
+        let (_, up_mm) = self.stroke_mm(Actuator::ProbeLift);
+        self.clear(&Motion::to(Actuator::ProbeLift, up_mm), &situation)
+            .is_ok()
+    }
+
     fn decide(&mut self, motion: &Motion, situation: &Situation) -> Result<(), Refusal> {
+        interlock::check(&self.interlocks, motion, situation, |it| self.stroke_mm(it))?;
         match judge::judge(&self.scene, &mut self.space, motion, situation)? {
             None => Ok(()),
             Some(finding) => {

@@ -19,6 +19,13 @@ pub enum Refusal {
         /// Low and high end of the stroke, mm.
         stroke_mm: (f64, f64),
     },
+    /// An input that the motion needs is off, or was not read recently.
+    Interlock {
+        /// The actuator.
+        actuator: Actuator,
+        /// Name of the input.
+        input: String,
+    },
     /// The part's size is invalid.
     PartSize {
         /// Body and pin length as given, mm.
@@ -64,6 +71,12 @@ impl fmt::Display for Refusal {
                 "{}: {found_mm} mm is not on its stroke of {low} to {high} mm",
                 words(actuator.name())
             ),
+            Refusal::Interlock { actuator, input } => write!(
+                f,
+                "{}: {} is not confirmed",
+                words(actuator.name()),
+                words(input)
+            ),
             Refusal::PartSize {
                 found_mm: [x, y, z, pins],
             } => {
@@ -81,8 +94,16 @@ impl std::error::Error for Refusal {}
 impl Refusal {
     /// Returns the refusal as a message of family `detail`, for alarms and refused orders.
     pub fn message(&self) -> Message {
-        let Self::Blocked(it) = self else {
-            return Message::detail("impossible_motion", self);
+        let it = match self {
+            Self::Blocked(it) => it,
+            Self::Interlock { actuator, input } => {
+                return Message::new("detail", "interlock")
+                    .with("actuator", actuator.name())
+                    .with("input", input);
+            }
+            Self::OutOfStroke { .. } | Self::PartSize { .. } => {
+                return Message::detail("impossible_motion", self);
+            }
         };
         let mm = |value: f64| format!("{value:.1}");
         let message = Message::detail("collision", self)

@@ -16,6 +16,8 @@ pub(super) struct Axis {
     pub direction: [f64; 3],
     /// Low and high end of the stroke, mm; the stroke includes 0.
     pub stroke_mm: (f64, f64),
+    /// Least distance from an end at which its sensor goes off, mm; at most half the stroke.
+    pub sensor_off_mm: f64,
     pub rides: Option<Actuator>,
     pub to_rest: String,
     pub to_end: String,

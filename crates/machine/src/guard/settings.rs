@@ -138,6 +138,9 @@ pub struct ActuatorSettings {
     /// Elements on this actuator that move against its axis (the other finger).
     #[serde(default)]
     pub opposed: Vec<String>,
+    /// Least distance from an end, mm, at which the sensor of that end goes off; 0, when absent, proves nothing.
+    #[serde(default)]
+    pub sensor_off_mm: f64,
     /// Instruction to a mechanic that brings the actuator to its rest end, as shown in refusals.
     pub to_rest: Option<String>,
     /// Instruction to a mechanic that brings the actuator to its other end.

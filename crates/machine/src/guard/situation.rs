@@ -40,15 +40,21 @@ pub struct Situation {
     pub parts: PartPlaces,
     /// Size of a part, the same in every place of `parts`.
     pub part_size: PartSize,
+    /// Bit n is set while the input of interlock n is on.
+    pub(super) granted: u16,
 }
 
 impl Situation {
-    /// Returns a situation in which no position is known: each actuator occupies its whole stroke.
+    /// Greatest number of interlocks.
+    pub(super) const INTERLOCKS: usize = u16::BITS as usize;
+
+    /// Returns a situation in which no position is known and no input is on: each actuator occupies its whole stroke.
     pub fn unknown(part_size: PartSize) -> Situation {
         Situation {
             positions: [None; 8],
             parts: PartPlaces::default(),
             part_size,
+            granted: 0,
         }
     }
 
@@ -75,6 +81,16 @@ impl Situation {
     /// Marks the position of `actuator` as unknown.
     pub fn forget(&mut self, actuator: Actuator) {
         self.positions[actuator.index()] = None;
+    }
+
+    /// Records that the input of the interlock with this number is on.
+    pub fn grant(&mut self, interlock: usize) {
+        self.granted |= 1 << interlock;
+    }
+
+    /// Returns true when the input of the interlock with this number is on.
+    pub(super) fn is_granted(&self, interlock: usize) -> bool {
+        self.granted >> interlock & 1 == 1
     }
 
     /// Returns the position of `actuator`; `None` when unknown.

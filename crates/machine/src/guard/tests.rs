@@ -5,6 +5,7 @@
 mod boxes;
 mod clearance;
 mod cycle;
+mod interlock;
 mod ledger;
 mod refused;
 mod sampled;

@@ -46,6 +46,17 @@ pub struct Part {
     pub serial: Option<String>,
     /// What is wrong with the serial number, with the readings. Such a part goes to retest without a test.
     pub serial_fault: Option<(SerialFault, String)>,
+    /// Batch and socket of a part that a person has put into a rack.
+    pub tested_in: Option<BatchSocket>,
+}
+
+/// A socket of the rack in one batch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BatchSocket {
+    /// Number of the batch in its run, from 1.
+    pub batch: u64,
+    /// Number of the socket.
+    pub socket: u16,
 }
 
 impl Part {
@@ -153,15 +164,17 @@ impl Ledger {
         self.places.keys().map(|place| (*place, self.part(*place)))
     }
 
-    /// Yields the parts in jaws or fingers, for changes.
+    /// Yields, for changes, the parts that an interruption leaves unfinished: those in jaws or fingers, and those in
+    /// sockets before their verdict. A judged part in a socket keeps its verdict, because a person takes it out anyway.
     pub fn held_mut(&mut self) -> impl Iterator<Item = &mut Part> {
-        let held = |place: &Place| match place {
+        let held = |place: &Place, part: &Part| match place {
             Place::Nest(_) | Place::Gripper => true,
-            Place::Pocket | Place::Falling | Place::Socket(_) => false,
+            Place::Socket(_) => part.bin.is_none(),
+            Place::Pocket | Place::Falling => false,
         };
         let places = self.places.iter_mut();
         places.filter_map(move |(place, it)| match it {
-            Content::Numbered(part) => held(place).then_some(part),
+            Content::Numbered(part) => held(place, part).then_some(part),
             Content::Unnumbered { .. } => None,
         })
     }
@@ -214,10 +227,13 @@ impl Ledger {
     }
 
     /// Adds a part that a person put into an empty socket; `reference`: serial number, if it is a reference part.
-    pub fn fill_socket(&mut self, socket: u16, reference: Option<String>) {
+    pub fn fill_socket(&mut self, at: BatchSocket, reference: Option<String>) {
         self.came_in += 1;
-        let part = self.number(reference, None);
-        self.put(Place::Socket(socket), Content::Numbered(part));
+        let part = Part {
+            tested_in: Some(at),
+            ..self.number(reference, None)
+        };
+        self.put(Place::Socket(at.socket), Content::Numbered(part));
     }
 
     /// Removes the part that a person took out of a socket and put into its bin; panics unless the part is judged.
@@ -331,6 +347,7 @@ impl Ledger {
             interrupted,
             serial: None,
             serial_fault: None,
+            tested_in: None,
         }
     }
 

@@ -1,7 +1,8 @@
 //! The state of the mechanism: end sensors, motions in progress, and the situation for the guard.
 //!
 //! An actuator is at an end only while its sensors show that end and it does not move; otherwise it may be anywhere on
-//! its way, or on its whole stroke. A sensor value older than [`SENSOR_AGE`] counts as unknown.
+//! its way, or on its whole stroke. On its way it has left the end where it began once the sensor there has been off
+//! for [`DEBOUNCE`]. A sensor value older than [`SENSOR_AGE`] counts as unknown.
 //!
 //! The mechanism detects a stroke that arrives late (it repeats a failed stroke away from rest once: back to rest, then
 //! out again), an actuator that leaves its end, both end sensors on at once, and the drive's alarm. A signal shorter
@@ -11,7 +12,7 @@ use super::moves::{Move, Strokes};
 use super::trouble::Trouble;
 use super::watch::Watch;
 use super::wear::Uses;
-use crate::guard::{Actuator, PartPlaces, PartSize, Position, Situation};
+use crate::guard::{Actuator, End, PartPlaces, PartSize, Position, Situation};
 use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
@@ -33,9 +34,28 @@ struct Underway {
     movement: Move,
     since: RigTime,
     from: [Position; 8],
+    /// Instant since which every reading of the sensors at the end where the motion began shows them off.
+    off_since: Option<RigTime>,
 }
 
 impl Underway {
+    /// Reads the sensors of the end where the motion began; a motion between other places has none.
+    fn look_back(&mut self, now: RigTime, image: &Image) {
+        let mut sensors = self.movement.other_end().iter();
+        let is_off = |point: &DigitalIn| {
+            let is_new = image.input_at(*point).is_some_and(|at| at >= self.since);
+            is_new && image.input(*point, now, SENSOR_AGE) == Some(false)
+        };
+        let all_off = sensors.len() > 0 && sensors.all(is_off);
+        self.off_since = all_off.then(|| self.off_since.unwrap_or(now));
+    }
+
+    /// Returns true when the actuator has left the end where the motion began.
+    fn has_left(&self, now: RigTime) -> bool {
+        self.off_since
+            .is_some_and(|since| now.since(since) >= DEBOUNCE)
+    }
+
     /// Returns true when every sensor of the motion's end was read at `since` or later.
     fn was_read_since(&self, since: RigTime, image: &Image) -> bool {
         let mut arrival = self.movement.arrival().iter();
@@ -143,6 +163,13 @@ impl Mechanism {
             || self.again.iter().any(|again| same(&again.movement))
     }
 
+    /// Returns true when the pusher, on its way back, has left the nest so far that the guard lets the probes rise.
+    pub fn pusher_left_the_probes(&self, now: RigTime) -> bool {
+        let mut underway = self.underway.iter();
+        let left = |it: &Underway| it.movement == Move::PusherRetract && it.has_left(now);
+        self.strokes.probes_beside_pusher && underway.any(left)
+    }
+
     /// Yields the motions in progress.
     pub fn moving(&self) -> impl Iterator<Item = Move> + '_ {
         self.underway.iter().map(|underway| underway.movement)
@@ -152,6 +179,24 @@ impl Mechanism {
     /// decides.
     pub fn is_undecided(&self) -> bool {
         self.watch.is_undecided()
+    }
+
+    /// Returns true when the motion needs an input that was not read recently; the line of its module then reports the
+    /// cause.
+    pub fn needs_unread_input(&self, movement: Move, now: RigTime, image: &Image) -> bool {
+        let end = match movement
+            .motion(&self.strokes)
+            .strokes()
+            .all(|it| it.to_mm == 0.0)
+        {
+            true => End::Rest,
+            false => End::Far,
+        };
+        let mut interlocks = image.wiring().interlocks.iter();
+        interlocks.any(|needs| {
+            let is_own = needs.actuator == movement.key() && needs.end == end;
+            is_own && image.input(needs.input, now, SENSOR_AGE).is_none()
+        })
     }
 
     /// Returns true for a deviation that no alarm explains yet: a sensor differs, or a motion has used half of its
@@ -227,6 +272,7 @@ impl Mechanism {
             movement,
             since: now,
             from,
+            off_since: None,
         });
         let several = self.underway.len() >= Actuator::ALL.len();
         assert!(!several, "two motions of one actuator");
@@ -267,7 +313,8 @@ impl Mechanism {
     /// Records arrivals; repeats a late stroke or reports it.
     pub fn update(&mut self, now: RigTime, image: &Image) -> MechanismUpdate {
         let mut found = MechanismUpdate::default();
-        for underway in std::mem::take(&mut self.underway) {
+        for mut underway in std::mem::take(&mut self.underway) {
+            underway.look_back(now, image);
             if self.is_there(&underway, now, image) {
                 self.arrived(underway.movement, &mut found);
             } else if self.is_late(&underway, image) {
@@ -342,7 +389,11 @@ impl Mechanism {
     pub fn position(&self, actuator: Actuator, now: RigTime, image: &Image) -> Position {
         for underway in &self.underway {
             if let Some(to_mm) = underway.movement.motion(&self.strokes).target_mm(actuator) {
-                return underway.from[actuator.index()].reaching(to_mm);
+                let way = underway.from[actuator.index()].reaching(to_mm);
+                return match underway.has_left(now) {
+                    true => self.without_its_beginning(way, actuator, to_mm),
+                    false => way,
+                };
             }
         }
         let is = |point, state| image.input(point, now, SENSOR_AGE) == Some(state);
@@ -369,6 +420,20 @@ impl Mechanism {
         known.unwrap_or_else(|| self.whole_stroke(actuator))
     }
 
+    /// Returns the way of an actuator to `to_mm` without the piece at its beginning in which the end sensor is on.
+    fn without_its_beginning(&self, way: Position, actuator: Actuator, to_mm: f64) -> Position {
+        let off_mm = self.strokes.sensor_off_mm[actuator.index()];
+        let (from_mm, last_mm) = match to_mm == 0.0 {
+            true => (0.0, self.strokes.of(actuator) - off_mm),
+            false => (off_mm, to_mm),
+        };
+        let (low, high) = way.span_mm();
+        Position::Between {
+            from_mm: low.max(from_mm),
+            to_mm: high.min(last_mm),
+        }
+    }
+
     fn whole_stroke(&self, actuator: Actuator) -> Position {
         if actuator == Actuator::SortAxis {
             return self.strokes.axis_span();
@@ -386,6 +451,11 @@ impl Mechanism {
             situation.set(actuator, self.position(actuator, now, image));
         }
         situation.parts = parts;
+        for (number, needs) in image.wiring().interlocks.iter().enumerate() {
+            if image.input(needs.input, now, SENSOR_AGE) == Some(true) {
+                situation.grant(number);
+            }
+        }
         situation
     }
 }

@@ -1,8 +1,11 @@
-//! Handling: brings parts to the instruments and into bins.
+//! Handling: brings parts to the instruments and into bins, with a feeder or by the hand of a person.
 //!
 //! Signals: end sensors of every actuator, part sensors of pocket, nest and gripper, and in the chute of each bin a
 //! light barrier, the *beam*. A sensor value is valid for [`mechanism::SENSOR_AGE`]; a sensor without a valid value
 //! counts as unknown, and no state is guessed for it.
+//!
+//! A rig has a [`feeder`] or a [`batch`] of sockets; [`ledger`], [`serial`] numbers, [`trouble`] and events of parts are
+//! the same for both. What follows is the feeder; [`batch`] has a page of its own.
 //!
 //! Normal sequence: [`feed`] lets one part into the pocket and pushes it into the nest; [`nest`] holds and tests it
 //! and hands it to the fingers; [`sort`] carries it to its bin, releases it and waits for the beam. The three overlap;
@@ -17,6 +20,7 @@
 //! Not handled here: reactions to troubles, orders, and the conditions (gates) of a lot. The station handles these,
 //! with alarms.
 
+pub mod batch;
 pub mod feed;
 pub mod feeder;
 pub mod inside;
@@ -34,6 +38,7 @@ pub mod turn;
 mod watch;
 pub mod wear;
 
+pub use batch::Batch;
 pub use feeder::Feeder;
 pub use ledger::Ledger;
 pub use mechanism::Mechanism;

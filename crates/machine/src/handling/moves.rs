@@ -42,8 +42,12 @@ pub enum Move {
 pub struct Strokes {
     /// Stroke of each actuator; the entry of the sort axis is unused.
     pub length_mm: [f64; 8],
+    /// Least distance from an end at which its sensor goes off, mm, in the same order; 0 where it proves nothing.
+    pub sensor_off_mm: [f64; 8],
     /// Position of each point of the sort axis, mm.
     pub axis_mm: Vec<(AxisStation, f64)>,
+    /// True when the guard lets the probes rise beside a pusher whose end sensor is off.
+    pub probes_beside_pusher: bool,
 }
 
 impl Strokes {

@@ -3,8 +3,9 @@
 //! ```text
 //! empty -> clamping -> probing -> testing -> judged -> gripping -> unclamping -> lifting -> empty
 //! ```
-//! The jaws close while the pusher returns; the probes rise only after both. The fingers close while the probes go
-//! down, the jaws open only after both, and the ledger moves the part to the gripper once z is up.
+//! The jaws close while the pusher returns; the probes rise once the jaws are closed and the pusher has left their way.
+//! The fingers close while the probes go down, the jaws open only after both, and the ledger moves the part to the
+//! gripper once z is up.
 
 use super::ledger::PartRole;
 use super::moves::Move;
@@ -111,9 +112,8 @@ impl Nest {
                 turn.drive(Move::ClampClose);
                 NestState::Clamping
             }),
-            NestState::Clamping => (turn.arrived(Move::ClampClose)
-                && turn.arrived(Move::PusherRetract))
-            .then(|| clamped(self.id, turn)),
+            NestState::Clamping => (turn.arrived(Move::ClampClose) && turn.probes_may_rise())
+                .then(|| clamped(self.id, turn)),
             NestState::Probing => turn
                 .arrived(Move::ProbesUp)
                 .then(|| begin(self.id, turn, &context)),

@@ -3,6 +3,7 @@
 use super::moves::Move;
 use super::place::Place;
 use crate::dut::Reason;
+use crate::dut::batch::BatchTrouble;
 use crate::rig::bin::Bin;
 use crate::rig::supply::RangeMismatch;
 use units::Span;
@@ -48,4 +49,14 @@ pub enum Trouble {
     SupplyRange(RangeMismatch),
     /// A test has ended without proof that the socket is free of dangerous voltage.
     SocketLive,
+    /// The closed door of the rack does not show that it is locked.
+    DoorNotLocked,
+    /// The thermometer in the rack has had no usable reading for too long.
+    RackUnread,
+    /// The rack has not cooled within this time; it goes on cooling.
+    CoolsSlowly(Span),
+    /// The test of a batch has met trouble of the rig.
+    Batch(BatchTrouble),
+    /// The step of this name in family `step` has taken this long.
+    TooLong(&'static str, Span),
 }

@@ -74,6 +74,11 @@ impl Turn<'_> {
             && self.arrived(Move::EscapementHold)
     }
 
+    /// Returns true when the pusher is back, or so far on its way back that the probes may rise beside it.
+    pub fn probes_may_rise(&self) -> bool {
+        self.arrived(Move::PusherRetract) || self.mechanism.pusher_left_the_probes(self.now)
+    }
+
     /// Moves the part from the pocket to the nest. A part of this run becomes the next reference part as long as
     /// reference parts are due.
     pub fn enter_nest(&mut self, nest: NestId) {

@@ -2,6 +2,7 @@
 //! samples, as recorded and as stored.
 
 pub mod act;
+pub mod conversion;
 pub mod curve;
 pub mod query;
 pub mod readings;

@@ -1,11 +1,13 @@
 //! The readings of a stage, by point, in order of arrival.
 
 use super::act::{Read, Word};
-use super::query::{Delivered, Instrument, Query};
+use super::conversion::Converted;
+use super::query::{Delivered, Instrument, Query, Waveform};
 use super::trace::Trace;
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, DigitalInput, GatedCounter, Point, Thermometer};
 use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Sample};
+use std::sync::Arc;
 use thiserror::Error;
 use units::RigTime;
 
@@ -16,6 +18,8 @@ pub struct Readings {
     samples: Vec<Sample>,
     counts: Vec<CountSample>,
     delivered: Vec<(Instrument, Delivered)>,
+    /// Results of conversions, in their order.
+    pub converted: Vec<Converted>,
     /// Outcomes of [`Act::Until`](super::act::Act::Until): true when the point became active.
     pub seen: Vec<bool>,
     /// All samples, and the values commanded to outputs and sources.
@@ -61,6 +65,12 @@ impl Readings {
         let here = self.delivered.iter();
         let here = here.filter(move |(of, _)| *of == instrument);
         here.map(|(_, delivered)| delivered)
+    }
+
+    /// Returns all waveforms, in order of arrival.
+    pub(super) fn waveforms(&self) -> Vec<Arc<Waveform>> {
+        let all = self.delivered.iter();
+        all.filter_map(|(_, it)| it.waveform.clone()).collect()
     }
 
     fn samples_of(&self, point: AnalogPoint) -> impl Iterator<Item = &Sample> {

@@ -3,19 +3,29 @@
 //! The trace holds analog samples and counts as read, numbers of instruments, the values commanded to sources and to the
 //! traced outputs of a kind, and words of inputs. A bit signal has one sample at each change and one at the last poll before it, so that
 //! polling for many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of the
-//! default recipe has some 150.
+//! default recipe has some 150. Of a waveform the trace keeps least and greatest value in each of [`WAVE_PIECES`]
+//! pieces, beside those samples and at most [`MAX_WAVE_SAMPLES`] in a test; the record ends when the program has.
 
-use super::query::{Delivered, Instrument, Query};
+use super::query::{Delivered, Instrument, Query, Waveform};
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};
 use crate::rig::sample::{CountSample, Quality, Sample};
 use crate::rig::wiring::Wiring;
-use units::{RigTime, Volt};
+use units::{RigTime, Span, Volt};
 
 /// Greatest number of samples of one test, all signals together.
 pub const MAX_SAMPLES: usize = 1_000;
 
 /// Most numbers of one program that the trace keeps.
 pub const MAX_NUMBERS: usize = 16;
+
+/// Pieces of a waveform of which the trace keeps two samples each.
+pub const WAVE_PIECES: usize = 150;
+
+/// Greatest number of samples of all waveforms of one test.
+pub const MAX_WAVE_SAMPLES: usize = 6_000;
+
+/// Names of the waveforms of a digitizer, from channel 1 on.
+const CHANNELS: [&str; 4] = ["channel_1", "channel_2", "channel_3", "channel_4"];
 
 /// A signal of the trace, as its point declares it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,6 +87,16 @@ impl Signal {
         }
     }
 
+    /// Returns the signal of a channel of a digitizer, counted from 1, volts at its input; `None` beyond the fourth.
+    pub fn channel(instrument: Instrument, number: usize) -> Option<Self> {
+        let name = CHANNELS.get(number.checked_sub(1)?)?;
+        Some(Self {
+            unit: "V",
+            step: 1e-6,
+            ..Self::program(instrument, name)
+        })
+    }
+
     /// Returns the name under which the history keeps the signal: that of the point, or `INSTRUMENT.PROGRAM`.
     pub fn stored_name(&self, wiring: &Wiring) -> String {
         match self.instrument {
@@ -112,6 +132,8 @@ pub struct TraceSample {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
     samples: Vec<TraceSample>,
+    /// Samples of waveforms among them.
+    of_waves: usize,
 }
 
 impl Trace {
@@ -123,7 +145,10 @@ impl Trace {
     /// Appends the trace of the next stage.
     pub fn append(&mut self, other: Self) {
         for sample in other.samples {
-            self.add(sample.signal, sample.at, sample.value);
+            match CHANNELS.contains(&sample.signal.name) {
+                true => self.add_of_wave(sample),
+                false => self.add(sample.signal, sample.at, sample.value),
+            }
         }
     }
 
@@ -161,8 +186,13 @@ impl Trace {
         self.add(Signal::input(quantity), sample.origin.at, value);
     }
 
-    /// Adds the numbers of a program; a list of more than [`MAX_NUMBERS`], such as a ramp, and a waveform leave none.
+    /// Adds the numbers of a program, or its waveform; a list of more than [`MAX_NUMBERS`], such as a ramp, leaves none.
     pub(super) fn delivered(&mut self, query: &Query, delivered: &Delivered, at: RigTime) {
+        let number = query.arguments.iter().find(|(name, _)| *name == "channel");
+        let signal = number.and_then(|it| Signal::channel(query.instrument, it.1 as usize));
+        if let (Some(wave), Some(signal)) = (&delivered.waveform, signal) {
+            self.wave(signal, wave, at);
+        }
         if delivered.numbers.len() > MAX_NUMBERS {
             return;
         }
@@ -185,6 +215,39 @@ impl Trace {
         }
     }
 
+    /// Adds least and greatest value of each piece of a waveform that ends at `end`.
+    fn wave(&mut self, signal: Signal, wave: &Waveform, end: RigTime) {
+        let count = wave.volts.len();
+        let at = |index: usize| {
+            let before = Span::seconds((count - index) as f64 * wave.step_s);
+            RigTime(end.0.saturating_sub(before.0))
+        };
+        let long = count.div_ceil(WAVE_PIECES).max(1);
+        for (piece, volts) in wave.volts.chunks(long).enumerate() {
+            let by_value = |a: &(usize, &f32), b: &(usize, &f32)| a.1.total_cmp(b.1);
+            let all = || volts.iter().enumerate();
+            let (Some(least), Some(most)) = (all().min_by(by_value), all().max_by(by_value)) else {
+                continue;
+            };
+            let mut both = [least, most];
+            both.sort_by_key(|it| it.0);
+            for (index, value) in both {
+                self.add_of_wave(TraceSample {
+                    signal,
+                    at: at(piece * long + index),
+                    value: f64::from(*value),
+                });
+            }
+        }
+    }
+
+    fn add_of_wave(&mut self, sample: TraceSample) {
+        if self.of_waves < MAX_WAVE_SAMPLES {
+            self.of_waves += 1;
+            self.samples.push(sample);
+        }
+    }
+
     fn add(&mut self, signal: Signal, at: RigTime, value: f64) {
         if signal.changes_only {
             let samples = self.samples.iter_mut().rev();
@@ -197,7 +260,7 @@ impl Trace {
                 return;
             }
         }
-        if self.samples.len() < MAX_SAMPLES {
+        if self.samples.len() - self.of_waves < MAX_SAMPLES {
             self.samples.push(TraceSample { signal, at, value });
         }
     }

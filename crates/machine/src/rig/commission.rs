@@ -76,7 +76,7 @@ pub fn verification(wiring: &Wiring) -> Vec<Check> {
         if module.model.has_outputs() {
             commands.push(Common::ReadWatchdogStatus.to(module.address));
             commands.push(Common::ReadWatchdog.to(module.address));
-            commands.push(read_safe(module));
+            commands.extend(read_safe(module));
         }
         if module.model.channels(Terminals::Counter) == 0 {
             commands.push(Common::ReadResetStatus.to(module.address));
@@ -89,15 +89,12 @@ pub fn verification(wiring: &Wiring) -> Vec<Check> {
     wiring.module_ids().flat_map(questions).collect()
 }
 
-fn read_safe(module: &Module) -> Command {
-    match module.output_form() {
-        Some(form) => dcon::AnalogOut::ReadSafe {
-            channel: None,
-            form,
-        }
-        .to(module.address),
-        None => Digital::ReadStored(Stored::Safe).to(module.address),
-    }
+fn read_safe(module: &Module) -> Vec<Command> {
+    let Some(form) = module.output_form() else {
+        return vec![Digital::ReadStored(Stored::Safe).to(module.address)];
+    };
+    let read = |channel| dcon::AnalogOut::ReadSafe { channel, form }.to(module.address);
+    module.level_channels().into_iter().map(read).collect()
 }
 
 /// Compares an answer with the wiring; returns the difference, or `None` when they agree.

@@ -1,11 +1,13 @@
-//! The points of this rig: those of the machine, those that a kind of device declares and `rig.toml` wires, and the
-//! beams that bins name. Their order here is their index in the tables of the wiring.
+//! All points of this rig: those of the machine, those that a kind of device declares and `rig.toml` wires, the beams
+//! that bins name, and the contacts of sockets. The place of a point in this order is its index in the tables of the
+//! wiring.
 
 use super::fault::Fault;
 use super::point::{DigitalIn, DigitalInput, DigitalOut, Fixture, Quantity, Switch};
+use super::rack;
 use super::settings::RigSettings;
 
-/// Digital inputs of this rig in the order of the wiring: machine, fixtures, beams.
+/// Names of the digital inputs in the order of the wiring: machine, fixtures, then beams or contacts of sockets.
 pub(super) struct InputNames {
     pub names: Vec<String>,
     /// Number of inputs of the machine and the fixtures.
@@ -22,6 +24,7 @@ impl InputNames {
         let before_beams = names.len();
         let beams = settings.bin.values().map(|bin| bin.beam.as_str());
         add_wired(&mut names, settings, beams);
+        names.extend(settings.socket.keys().map(|it| rack::contact_name(it)));
         Self {
             names,
             before_beams,
@@ -37,14 +40,28 @@ impl InputNames {
         (at >= self.before_beams).then_some(DigitalInput::at(at))
     }
 
+    /// Returns the handle of the contact of a socket.
+    ///
+    /// # Panics
+    /// Panics for a socket that `rig.toml` lacks.
+    pub(super) fn contact(&self, socket: &str) -> DigitalInput {
+        let name = rack::contact_name(socket);
+        match self.names.iter().rposition(|known| *known == name) {
+            Some(at) => DigitalInput::at(at),
+            None => panic!("no socket {socket}"),
+        }
+    }
+
     /// Checks that `rig.toml` wires no digital input of an unknown name.
     pub(super) fn check(&self, settings: &RigSettings) -> Result<(), Fault> {
+        let contacts = settings.socket.len();
+        let known = &self.names[..self.names.len() - contacts];
         let mut others = settings.digital_in.keys();
-        let Some(name) = others.find(|name| !self.names.contains(name)) else {
+        let Some(name) = others.find(|name| !known.contains(name)) else {
             return Ok(());
         };
         let missing = self.missing.iter().map(|it| (*it).to_owned());
-        let known = self.names.iter().cloned().chain(missing).collect();
+        let known = known.iter().cloned().chain(missing).collect();
         Err(Fault::unknown(format!("digital_in.{name}"), known))
     }
 }
@@ -92,7 +109,9 @@ impl Declared<'_> {
 
     pub(super) fn thermometers(&self) -> Vec<&'static str> {
         let wired = &self.settings.temperature;
-        self.names(|it| it.temperature, |name| wired.contains_key(name))
+        let of_kinds = self.names(|it| it.temperature, |name| wired.contains_key(name));
+        let of_rack = self.settings.rack.as_ref().map(|_| rack::THERMOMETER);
+        unique(of_kinds.into_iter().chain(of_rack), |name| name)
     }
 
     pub(super) fn counters(&self) -> Vec<&'static str> {

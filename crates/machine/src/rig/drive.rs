@@ -10,8 +10,9 @@
 
 use super::axis::AxisStation;
 use super::level::{Correction, SupplyError, nearest_level};
+use super::model::Terminals;
 use super::point::{AnalogOutput, DigitalOut, DigitalOutput};
-use super::wiring::{LineId, ModuleId, Wiring};
+use super::wiring::{LineId, Module, ModuleId, Wiring};
 use crate::guard::{Actuator, Cleared};
 use dcon::{Command, Digital, Level, OutputWord, Width};
 use std::sync::Arc;
@@ -59,9 +60,12 @@ enum Image {
         before: Option<u16>,
         width: Width,
     },
-    /// An analog output.
-    Level(Level),
+    /// Analog outputs by channel; `None` beyond the last one of the module.
+    Levels([Option<Level>; MOST_LEVELS]),
 }
+
+/// Greatest number of analog outputs that a module has.
+const MOST_LEVELS: usize = 4;
 
 #[derive(Debug, Clone, Copy)]
 struct Output {
@@ -119,7 +123,7 @@ impl Outputs {
         let station = match motion.target_mm(Actuator::SortAxis) {
             Some(x_mm) => Some(
                 self.wiring
-                    .axis
+                    .axis()
                     .station_at(x_mm)
                     .ok_or(DriveError::NoSuchStation { x_mm })?,
             ),
@@ -154,7 +158,7 @@ impl Outputs {
     }
 
     fn travel(&mut self, station: AxisStation) {
-        let number = self.wiring.axis.point(station).number;
+        let number = self.wiring.axis().point(station).number;
         self.switch(DigitalOut::AxisPoint0, number & 1 != 0);
         self.switch(DigitalOut::AxisPoint1, number & 2 != 0);
         self.switch(DigitalOut::AxisPoint2, number & 4 != 0);
@@ -213,9 +217,15 @@ impl Outputs {
         let module = self.wiring.module(terminal.module);
         let name = self.wiring.source_name(point);
         let (level, really) = nearest_level(name, module, terminal.gain, supply, correction)?;
-        if let Some(output) = &mut self.modules[terminal.module.0] {
-            output.due |= output.image != Image::Level(level);
-            output.image = Image::Level(level);
+        if let Some(Output {
+            image: Image::Levels(levels),
+            due,
+            ..
+        }) = &mut self.modules[terminal.module.0]
+        {
+            let present = &mut levels[usize::from(terminal.channel.get())];
+            *due |= *present != Some(level);
+            *present = Some(level);
         }
         Ok(really)
     }
@@ -242,7 +252,7 @@ impl Outputs {
                 continue;
             };
             output.due = false;
-            for command in output.commands(at.address) {
+            for command in output.commands(at) {
                 output.in_flight += 1;
                 writes.push(Write {
                     line: at.line,
@@ -290,13 +300,14 @@ impl Outputs {
         let terminal = self.wiring.digital_out(point);
         match self.modules[terminal.module.0].map(|output| output.image) {
             Some(Image::Bits { word, .. }) => word & terminal.bit() != 0,
-            Some(Image::Level(_)) | None => false,
+            Some(Image::Levels(_)) | None => false,
         }
     }
 }
 
 impl Output {
-    fn commands(&mut self, address: dcon::Address) -> Vec<Command> {
+    fn commands(&mut self, module: &Module) -> Vec<Command> {
+        let address = module.address;
         match &mut self.image {
             Image::Bits {
                 word,
@@ -309,13 +320,14 @@ impl Output {
                     .map(|outputs| Digital::Write(outputs).to(address))
                     .collect()
             }
-            Image::Level(level) => vec![
-                dcon::AnalogOut::Write {
-                    channel: None,
-                    level: *level,
-                }
-                .to(address),
-            ],
+            Image::Levels(levels) => {
+                let write = |(channel, level): (_, Option<Level>)| {
+                    let level = level?;
+                    Some(dcon::AnalogOut::Write { channel, level }.to(address))
+                };
+                let levels = module.level_channels().into_iter().zip(*levels);
+                levels.filter_map(write).collect()
+            }
         }
     }
 }
@@ -324,9 +336,10 @@ impl Output {
 fn safe_image(wiring: &Wiring, module: ModuleId) -> Option<Image> {
     let module = wiring.module(module);
     if let Some(form) = module.output_form() {
-        return Level::nearest(form, module.type_code, module.safe_volts)
-            .ok()
-            .map(Image::Level);
+        let safe = Level::nearest(form, module.type_code, module.safe_volts).ok()?;
+        let outputs = usize::from(module.model.channels(Terminals::AnalogOut));
+        let levels = std::array::from_fn(|channel| (channel < outputs).then_some(safe));
+        return Some(Image::Levels(levels));
     }
     let width = module.model.write_width()?;
     Some(Image::Bits {

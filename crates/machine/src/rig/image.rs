@@ -197,8 +197,9 @@ impl Image {
 
     fn store_events(&mut self, arrival: &Arrival<'_>, channel: Channel, count: u16) {
         let mut terminals = self.wiring.digital_in.iter().map(|(_, terminal)| terminal);
-        let here = terminals
-            .position(|terminal| terminal.module == arrival.module && terminal.channel == channel);
+        let here = terminals.position(|it| {
+            it.is_some_and(|it| it.module == arrival.module && it.channel == channel)
+        });
         if let Some(index) = here {
             let origin = arrival.origin(channel, &Arc::from(arrival.raw));
             self.events[index] = Some(CountSample {
@@ -259,7 +260,7 @@ impl Image {
         now: RigTime,
         max_age: Span,
     ) -> Option<bool> {
-        let terminal = self.wiring.digital_in(point);
+        let terminal = self.wiring.wired_in(point)?;
         let word = self.words[terminal.module.0]?;
         let fresh = word.at <= now && now.since(word.at) <= max_age;
         let model = self.wiring.module(terminal.module).model;
@@ -282,7 +283,7 @@ impl Image {
 
     /// Returns the time of the last answered request for a digital input; `None` without a value.
     pub fn input_at(&self, point: impl Into<DigitalInput>) -> Option<RigTime> {
-        self.words[self.wiring.digital_in(point).module.0].map(|word| word.at)
+        self.words[self.wiring.wired_in(point)?.module.0].map(|word| word.at)
     }
 
     /// Returns the last bits of a digital module, and the time of their request.

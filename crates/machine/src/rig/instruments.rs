@@ -16,7 +16,7 @@ pub struct Instrument(u16);
 
 impl Instrument {
     /// Makes the handle of the instrument at an index of the wiring.
-    fn at(index: usize) -> Self {
+    pub(crate) fn at(index: usize) -> Self {
         assert!(
             index < usize::from(u16::MAX),
             "more instruments than an index can count"
@@ -93,7 +93,7 @@ pub(super) fn resolve_instruments(
         };
         if let Some(other) = resolved
             .iter()
-            .find(|it| it.link.transport == link.transport)
+            .find(|it| shares_port(&it.link.transport, &link.transport))
         {
             let expected = match link.gpib {
                 Some(_) => "an adapter of its own",
@@ -115,4 +115,14 @@ pub(super) fn resolve_instruments(
         });
     }
     Ok(resolved)
+}
+
+/// Returns true when both use the same TCP port or serial port; the baud rate does not matter.
+fn shares_port(one: &Transport, other: &Transport) -> bool {
+    match (one, other) {
+        (Transport::Serial { path: one, .. }, Transport::Serial { path: other, .. }) => {
+            one == other
+        }
+        (Transport::Serial { .. } | Transport::Tcp { .. }, _) => one == other,
+    }
 }

@@ -4,8 +4,9 @@
 //! - [`point`]: the points to sense, switch, set, measure and count: a closed list for the machine, and a list
 //!   declared by each kind of device.
 //! - [`settings`], [`model`] and [`wiring`]: the wiring of each point. [`resolve`], `declared`, `modules`, [`axis`]
-//!   (with each [`bin`]) and [`reaction`] resolve and check `rig.toml`; a [`fault::Fault`] names a setting that does
-//!   not fit.
+//!   (with each [`bin`]), [`rack`] and [`reaction`] resolve and check `rig.toml`; a [`fault::Fault`] names a setting
+//!   that does not fit.
+//! - [`handling`]: a feeder or a rack.
 //! - [`instruments`]: the SCPI instruments with their profiles and links.
 //! - [`commission`]: checks that the modules on the lines are those of `rig.toml`.
 //! - [`query`], [`sample`], [`image`]: commands that read points, and the values read, with their times.
@@ -21,13 +22,16 @@ mod comparison;
 mod declared;
 pub mod drive;
 pub mod fault;
+pub mod handling;
 pub mod image;
 pub mod instruments;
+pub mod interlock;
 pub mod level;
 pub mod model;
 mod modules;
 pub mod point;
 pub mod query;
+pub mod rack;
 pub mod reaction;
 pub mod resolve;
 pub mod sample;

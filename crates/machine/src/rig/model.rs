@@ -11,10 +11,14 @@ named! {
         I7017F = "I-7017F",
         /// 8 protected analog inputs with a fast mode.
         I7017R = "I-7017R",
+        /// 8 thermocouples.
+        I7018 = "I-7018",
         /// 1 analog output, 12 bit.
         I7021 = "I-7021",
         /// 1 analog output, 16 bit.
         I7021P = "I-7021P",
+        /// 4 analog outputs, 14 bit.
+        I7024 = "I-7024",
         /// 3 resistance thermometers.
         I7033 = "I-7033",
         /// 14 isolated digital inputs.
@@ -45,7 +49,7 @@ named! {
 pub enum Terminals {
     /// Voltage inputs.
     AnalogIn,
-    /// Resistance thermometers.
+    /// Resistance thermometers or thermocouples.
     Temperature,
     /// Voltage or current output.
     AnalogOut,
@@ -65,8 +69,13 @@ impl Model {
             Terminals::AnalogIn => {
                 count(matches!(self, Self::I7017 | Self::I7017F | Self::I7017R), 8)
             }
-            Terminals::Temperature => count(matches!(self, Self::I7033), 3),
-            Terminals::AnalogOut => count(matches!(self, Self::I7021 | Self::I7021P), 1),
+            Terminals::Temperature => {
+                count(matches!(self, Self::I7033), 3) + count(matches!(self, Self::I7018), 8)
+            }
+            Terminals::AnalogOut => {
+                count(matches!(self, Self::I7021 | Self::I7021P), 1)
+                    + count(matches!(self, Self::I7024), 4)
+            }
             Terminals::Counter => count(matches!(self, Self::I7080), 2),
             Terminals::DigitalIn => self.digital().0,
             Terminals::DigitalOut => self.digital().1,
@@ -87,8 +96,10 @@ impl Model {
             Self::I7017
             | Self::I7017F
             | Self::I7017R
+            | Self::I7018
             | Self::I7021
             | Self::I7021P
+            | Self::I7024
             | Self::I7033
             | Self::I7080 => (0, 0),
         }
@@ -99,12 +110,14 @@ impl Model {
         self.type_codes().contains(&code)
     }
 
-    /// Returns the type codes that the rig can use: voltage inputs, 0 to 10 V outputs, Pt100 ranges, and for counters
-    /// the counting (not the frequency) mode.
+    /// Returns the type codes that the rig supports: voltage inputs, outputs from 0 to 10 V, Pt100, thermocouples J, K,
+    /// T and E, and for counters the counting (not the frequency) mode. A code means different ranges on different
+    /// models.
     pub fn type_codes(self) -> &'static [u8] {
         match self {
             Self::I7017 | Self::I7017F | Self::I7017R => &[0x08, 0x09, 0x0A, 0x0B, 0x0C],
-            Self::I7021 | Self::I7021P => &[0x32],
+            Self::I7018 => &[0x0E, 0x0F, 0x10, 0x11],
+            Self::I7021 | Self::I7021P | Self::I7024 => &[0x32],
             Self::I7033 => &[0x20, 0x21, 0x22, 0x23, 0x24, 0x25, 0x26, 0x27],
             Self::I7041
             | Self::I7043
@@ -164,7 +177,7 @@ impl Terminals {
     pub fn words(self) -> &'static str {
         match self {
             Self::AnalogIn => "analog inputs",
-            Self::Temperature => "resistance thermometers",
+            Self::Temperature => "thermometers",
             Self::AnalogOut => "an analog output",
             Self::Counter => "counters",
             Self::DigitalIn => "digital inputs",

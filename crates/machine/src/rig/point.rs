@@ -2,7 +2,8 @@
 //!
 //! A point is a name of the process ("pusher retracted"), never a terminal; `config/rig.toml` wires it to a module and
 //! channel. Three sources name points:
-//! - the machine: safety, actuators, buttons, axis, lamps. A closed enum; every one must be wired.
+//! - the machine: safety, actuators, buttons, axis, lamps, door. Closed enums; a rig wires those that its handling
+//!   needs ([`DigitalIn::OF_FEEDER`], [`DigitalIn::OF_RACK`]) and no other.
 //! - the kinds of device under test: each declares a [`Fixture`]. A rig may lack them.
 //! - the bins: each names the digital input of its beam, the light barrier in its chute.
 //!
@@ -39,11 +40,12 @@ named! {
         GripperPart = "gripper_part",
         ButtonStop = "button_stop",
         ButtonReset = "button_reset",
+        DoorLocked = "door_locked",
     }
 }
 
 named! {
-    /// Transistor outputs of the machine, by their names in `config/rig.toml`: the valves, the axis, the lamps.
+    /// Digital outputs of the machine, by their names in `config/rig.toml`: the valves, the axis, the lamps, the lock.
     DigitalOut {
         EscapementRelease = "escapement_release",
         PusherExtend = "pusher_extend",
@@ -63,7 +65,41 @@ named! {
         LampYellow = "lamp_yellow",
         LampRed = "lamp_red",
         Buzzer = "buzzer",
+        DoorLockRelease = "door_lock_release",
+        LampReady = "lamp_ready",
+        LampTesting = "lamp_testing",
+        LampUnload = "lamp_unload",
     }
+}
+
+impl DigitalIn {
+    /// Inputs that a rig with a feeder must have: all but the lock of a rack.
+    pub const OF_FEEDER: &'static [Self] = Self::ALL.split_at(Self::DoorLocked as usize).0;
+    /// Inputs that a rig with a rack must have.
+    pub const OF_RACK: &'static [Self] =
+        &[Self::EmergencyStopOk, Self::DoorClosed, Self::DoorLocked];
+    /// Names of [`Self::OF_FEEDER`].
+    pub const NAMES_OF_FEEDER: &'static [&'static str] =
+        Self::NAMES.split_at(Self::OF_FEEDER.len()).0;
+    /// Names of [`Self::OF_RACK`].
+    pub const NAMES_OF_RACK: &'static [&'static str] = &[
+        Self::EmergencyStopOk.name(),
+        Self::DoorClosed.name(),
+        Self::DoorLocked.name(),
+    ];
+}
+
+impl DigitalOut {
+    /// Outputs that a rig with a feeder must have: all up to the last one of the stack light.
+    pub const OF_FEEDER: &'static [Self] = Self::ALL.split_at(Self::DoorLockRelease as usize).0;
+    /// Outputs that a rig with a rack must have: all others.
+    pub const OF_RACK: &'static [Self] = Self::ALL.split_at(Self::DoorLockRelease as usize).1;
+    /// Names of [`Self::OF_FEEDER`].
+    pub const NAMES_OF_FEEDER: &'static [&'static str] =
+        Self::NAMES.split_at(Self::OF_FEEDER.len()).0;
+    /// Names of [`Self::OF_RACK`].
+    pub const NAMES_OF_RACK: &'static [&'static str] =
+        Self::NAMES.split_at(Self::OF_FEEDER.len()).1;
 }
 
 /// A digital output declared by a kind of device.
@@ -201,7 +237,11 @@ impl DigitalOut {
             | Self::LampGreen
             | Self::LampYellow
             | Self::LampRed
-            | Self::Buzzer => false,
+            | Self::Buzzer
+            | Self::DoorLockRelease
+            | Self::LampReady
+            | Self::LampTesting
+            | Self::LampUnload => false,
         }
     }
 }
@@ -214,6 +254,26 @@ pub struct MissingPoint {
     pub section: &'static str,
     /// Name of the first missing point.
     pub name: &'static str,
+}
+
+/// Returns the handle of every name, in order.
+///
+/// # Errors
+/// Fails with the first name for which `handle` has none.
+///
+/// # Panics
+/// Panics unless there are `N` names.
+pub fn all_wired<T: Copy, const N: usize>(
+    section: &'static str,
+    names: &[&'static str],
+    handle: impl Fn(&str) -> Option<T>,
+) -> Result<[T; N], MissingPoint> {
+    assert_eq!(names.len(), N, "a handle for each name");
+    let mut found = Vec::with_capacity(N);
+    for name in names {
+        found.push(handle(name).ok_or(MissingPoint { section, name })?);
+    }
+    Ok(std::array::from_fn(|at| found[at]))
 }
 
 #[cfg(test)]

@@ -10,12 +10,11 @@ impl Module {
     /// Returns the format of the module's readings; `None` for a module that measures nothing.
     pub fn input_form(&self) -> Option<InputForm> {
         let format = self.format?;
-        if self.model.channels(Terminals::AnalogIn) > 0 {
-            Some(InputForm::eight(format, self.type_code))
-        } else if self.model.channels(Terminals::Temperature) > 0 {
-            Some(InputForm::three(format, self.type_code))
-        } else {
-            None
+        match self.model.channels(Terminals::AnalogIn) + self.model.channels(Terminals::Temperature)
+        {
+            8 => Some(InputForm::eight(format, self.type_code)),
+            3 => Some(InputForm::three(format, self.type_code)),
+            _ => None,
         }
     }
 
@@ -25,11 +24,20 @@ impl Module {
             return None;
         }
         Some(match self.format? {
+            DataFormat::Engineering if self.model == Model::I7024 => OutputForm::EngineeringSigned,
             DataFormat::Engineering => OutputForm::Engineering,
             DataFormat::Percent => OutputForm::Percent,
             DataFormat::Hex if self.model == Model::I7021P => OutputForm::Hex16,
             DataFormat::Hex => OutputForm::Hex12,
         })
+    }
+
+    /// Returns for each analog output the channel to name in commands; `None` on a module with a single output.
+    pub fn level_channels(&self) -> Vec<Option<Channel>> {
+        match self.model.channels(Terminals::AnalogOut) {
+            1 => vec![None],
+            several => (0..several).map(Channel::new).collect(),
+        }
     }
 
     /// Returns the only enabled channel of an analog input module; `None` when several are.
@@ -56,7 +64,7 @@ impl Wiring {
         }
         if let Some(form) = module.output_form() {
             return dcon::AnalogOut::ReadPresent {
-                channel: None,
+                channel: module.level_channels()[0],
                 form,
             }
             .to(module.address);

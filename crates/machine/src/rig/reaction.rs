@@ -20,6 +20,7 @@
 //! the frames assumed here.
 
 use super::fault::Fault;
+use super::handling::Handling;
 use super::point::DigitalOut;
 use super::wiring::{LineId, Wiring};
 use units::Span;
@@ -42,12 +43,22 @@ impl Wiring {
         self.module(self.emergency_stop_module()).line
     }
 
-    /// Returns the longest time from the opening of the emergency-stop contact to the last write.
+    /// Returns the longest time from the opening of the emergency-stop contact to the last write that ends a motion; on
+    /// a rig with a rack, which moves nothing, to the last write that makes outputs safe.
     pub fn longest_reaction(&self) -> Span {
-        let moved = DigitalOut::ALL.iter().filter(|point| point.moves());
-        let lines = moved.map(|point| self.module(self.digital_out(*point).module).line);
-        let made_safe = lines.map(|line| self.longest_writing(line)).max();
-        self.emergency_stop_max_age() + made_safe.unwrap_or_default()
+        let lines: Vec<LineId> = match self.handling {
+            Handling::Feeder(_) => {
+                let moved = DigitalOut::ALL.iter().filter(|point| point.moves());
+                let lines = moved.map(|point| self.module(self.digital_out(*point).module).line);
+                lines.collect()
+            }
+            Handling::Rack(_) => {
+                let with_outputs = self.modules.iter().filter(|it| it.model.has_outputs());
+                with_outputs.map(|module| module.line).collect()
+            }
+        };
+        let made_safe = lines.into_iter().map(|line| self.longest_writing(line));
+        self.emergency_stop_max_age() + made_safe.max().unwrap_or_default()
     }
 
     /// Returns the time left between [`Wiring::longest_reaction`] and the reaction time that the plant accepts. A wait

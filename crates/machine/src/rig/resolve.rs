@@ -9,10 +9,13 @@
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
 use super::fault::Fault;
+use super::handling::{FeederTable, Handling};
 use super::instruments::{Profiles, resolve_instruments};
+use super::interlock::resolve_interlocks;
 use super::model::Terminals;
 use super::modules::resolve_modules;
-use super::point::{DigitalIn, DigitalOut, Fixture, Quantity, Switch};
+use super::point::{DigitalIn, DigitalOut, Fixture, Quantity, Switch, Thermometer};
+use super::rack::{self, Rack};
 use super::reaction::check_reaction;
 use super::settings::{
     AnalogInSettings, AnalogOutSettings, ChannelSettings, DigitalInSettings, RigSettings,
@@ -50,36 +53,19 @@ impl Wiring {
         let modules = resolve_modules(settings, &lines)?;
         let instruments = resolve_instruments(&settings.instrument, &settings.line, profiles)?;
         let inputs = InputNames::of(settings, fixtures);
-        let axis = AxisTable::resolve(&settings.axis, &settings.bin, |name| inputs.beam(name))?;
-        inputs.check(settings)?;
-        let strokes = resolve_strokes(&settings.actuator)?;
-        let supply_ranges = resolve_ranges(settings, &modules)?;
         let declared = Declared { settings, fixtures };
+        let handling = resolve_handling(settings, &inputs, &declared)?;
+        inputs.check(settings)?;
+        let supply_ranges = resolve_ranges(settings, &modules)?;
         let quantities = declared.quantities();
         check_units(&settings.analog_in, &quantities)?;
         let mut terminals = TerminalsInUse {
             modules: &modules,
             taken: BTreeMap::new(),
         };
-        let wiring = Self {
-            digital_in: digital(
-                terminals.wire(
-                    ("digital_in", Terminals::DigitalIn),
-                    &inputs.names,
-                    String::as_str,
-                    &settings.digital_in,
-                )?,
-                |name| settings.digital_in[name].active == "low",
-            ),
-            digital_out: digital(
-                terminals.wire(
-                    ("digital_out", Terminals::DigitalOut),
-                    &declared.outputs(),
-                    |output: &Switch| output.name,
-                    &settings.digital_out,
-                )?,
-                |_| false,
-            ),
+        let mut wiring = Self {
+            digital_in: terminals.inputs(settings, &inputs)?,
+            digital_out: terminals.outputs(settings, &declared.outputs())?,
             analog_in: terminals.wire(
                 ("analog_in", Terminals::AnalogIn),
                 &quantities,
@@ -112,9 +98,11 @@ impl Wiring {
             instruments,
             bus: settings.bus,
             safety: settings.safety,
-            strokes,
-            axis,
+            interlocks: Vec::new(),
+            handling,
         };
+        wiring.interlocks =
+            resolve_interlocks(&settings.actuator, |name| wiring.digital_input(name))?;
         assert!(
             DigitalIn::ALL
                 .iter()
@@ -176,6 +164,77 @@ impl TerminalsInUse<'_> {
         Ok((ModuleId(index), terminal))
     }
 
+    /// Reserves a terminal for each digital input; inputs of the machine that only the other handling needs get none.
+    fn inputs(
+        &mut self,
+        settings: &RigSettings,
+        inputs: &InputNames,
+    ) -> Result<Vec<(String, Option<Terminal>)>, Fault> {
+        let needed = match settings.rack {
+            None => DigitalIn::NAMES_OF_FEEDER,
+            Some(_) => DigitalIn::NAMES_OF_RACK,
+        };
+        let section = ("digital_in", Terminals::DigitalIn);
+        let (before_sockets, sockets) = inputs
+            .names
+            .split_at(inputs.names.len() - settings.socket.len());
+        let mut all = Vec::with_capacity(inputs.names.len());
+        for name in before_sockets {
+            let elsewhere =
+                DigitalIn::NAMES.contains(&name.as_str()) && !needed.contains(&name.as_str());
+            let one = std::slice::from_ref(name);
+            let at = match elsewhere {
+                true => None,
+                false => self
+                    .wire(section, one, String::as_str, &settings.digital_in)?
+                    .pop(),
+            };
+            let terminal = at.map(|(_, at)| at.digital(settings.digital_in[name].active == "low"));
+            all.push((name.clone(), terminal));
+        }
+        for (name, (socket, wired)) in sockets.iter().zip(&settings.socket) {
+            let key = format!("socket.{socket}");
+            let (module, channel) = self.take(&key, &wired.module, wired.channel, section.1)?;
+            let active_low = wired.active == "low";
+            all.push((
+                name.clone(),
+                Some(Terminal {
+                    module,
+                    channel,
+                    active_low,
+                }),
+            ));
+        }
+        Ok(all)
+    }
+
+    /// Reserves a terminal for each digital output; outputs of the machine that only the other handling needs get none.
+    fn outputs(
+        &mut self,
+        settings: &RigSettings,
+        outputs: &[Switch],
+    ) -> Result<Vec<(Switch, Option<Terminal>)>, Fault> {
+        let needed = match settings.rack {
+            None => DigitalOut::NAMES_OF_FEEDER,
+            Some(_) => DigitalOut::NAMES_OF_RACK,
+        };
+        let section = ("digital_out", Terminals::DigitalOut);
+        let mut all = Vec::with_capacity(outputs.len());
+        for output in outputs {
+            let elsewhere =
+                DigitalOut::NAMES.contains(&output.name) && !needed.contains(&output.name);
+            let one = std::slice::from_ref(output);
+            let at = match elsewhere {
+                true => None,
+                false => self
+                    .wire(section, one, |it| it.name, &settings.digital_out)?
+                    .pop(),
+            };
+            all.push((*output, at.map(|(_, at)| at.digital(false))));
+        }
+        Ok(all)
+    }
+
     /// Reserves a terminal for each point of a section.
     fn wire<P: Clone, W: Wired>(
         &mut self,
@@ -233,26 +292,41 @@ impl Wired for AnalogInSettings {
 
 impl Wired for AnalogOutSettings {
     fn at(&self) -> (&str, u8) {
-        (&self.module, 0)
+        (&self.module, self.channel)
     }
     fn gain(&self) -> f64 {
         self.gain
     }
 }
 
-fn digital<P>(
-    points: Vec<(P, AnalogTerminal)>,
-    active_low: impl Fn(&P) -> bool,
-) -> Vec<(P, Terminal)> {
-    let terminal = |(point, at): (P, AnalogTerminal)| {
-        let terminal = Terminal {
-            module: at.module,
-            channel: at.channel,
-            active_low: active_low(&point),
-        };
-        (point, terminal)
+impl AnalogTerminal {
+    fn digital(self, active_low: bool) -> Terminal {
+        Terminal {
+            module: self.module,
+            channel: self.channel,
+            active_low,
+        }
+    }
+}
+
+/// Resolves the feeder, or the rack of a rig with `[rack]`.
+fn resolve_handling(
+    settings: &RigSettings,
+    inputs: &InputNames,
+    declared: &Declared,
+) -> Result<Handling, Fault> {
+    let Some(table) = &settings.rack else {
+        let axis = AxisTable::resolve(&settings.axis, &settings.bin, |name| inputs.beam(name))?;
+        let strokes = resolve_strokes(&settings.actuator)?;
+        return Ok(Handling::Feeder(FeederTable { axis, strokes }));
     };
-    points.into_iter().map(terminal).collect()
+    let names = declared.thermometers();
+    let thermometer = names.iter().position(|name| *name == rack::THERMOMETER);
+    let Some(thermometer) = thermometer.map(Thermometer::at) else {
+        return Err(unwired(&format!("temperature.{}", rack::THERMOMETER)));
+    };
+    let contact = |socket: &str| inputs.contact(socket);
+    Rack::resolve(table, settings, thermometer, contact).map(Handling::Rack)
 }
 
 /// Checks that each analog input has the unit of its quantity.
@@ -292,8 +366,11 @@ fn check_ports(lines: &[Line]) -> Result<(), Fault> {
 
 /// Checks that each beam is wired to an event counter, because a falling part is too quick for a scan.
 fn check_beams(wiring: &Wiring, settings: &RigSettings) -> Result<(), Fault> {
-    for bin in wiring.axis.bins() {
-        let beam = wiring.axis.beam(bin);
+    let Some(feeder) = wiring.feeder() else {
+        return Ok(());
+    };
+    for bin in feeder.axis.bins() {
+        let beam = feeder.axis.beam(bin);
         let model = wiring.module(wiring.digital_in(beam).module).model;
         if !model.counts_events() {
             let found = settings

@@ -38,12 +38,20 @@ pub struct RigSettings {
     pub digital_in: BTreeMap<String, DigitalInSettings>,
     /// Digital outputs by point name.
     pub digital_out: BTreeMap<String, ChannelSettings>,
-    /// Longest time of a stroke, by actuator.
+    /// Longest time of a stroke, by actuator; empty without a feeder.
+    #[serde(default)]
     pub actuator: BTreeMap<String, ActuatorSettings>,
-    /// Stations of the sort axis that are not bins.
+    /// Stations of the sort axis that are not bins; empty without a feeder.
+    #[serde(default)]
     pub axis: BTreeMap<String, StationSettings>,
-    /// Bins by name.
+    /// Bins by name; empty without a feeder.
+    #[serde(default)]
     pub bin: BTreeMap<String, BinSettings>,
+    /// The rack of a rig that a person loads and unloads; `None` on a rig with a feeder.
+    pub rack: Option<RackSettings>,
+    /// Sockets of the rack by number.
+    #[serde(default)]
+    pub socket: BTreeMap<String, SocketSettings>,
 }
 
 /// One RS-485 line, always 8N1.
@@ -132,13 +140,23 @@ pub struct AnalogInSettings {
     pub gain: f64,
 }
 
-/// An analog output point; always channel 0 of its module.
+/// An analog output point.
 #[derive(Debug, Clone, Deserialize)]
 pub struct AnalogOutSettings {
     /// Name of the module.
     pub module: String,
-    /// Volts that the coil supply gives per volt at the module's terminal.
+    /// Channel, from 0; a 7021 has only channel 0.
+    #[serde(default)]
+    pub channel: u8,
+    /// Volts of the coil supply per volt at the module's terminal; 1 for an output that feeds no coil supply.
+    #[serde(default = "AnalogOutSettings::no_gain")]
     pub gain: f64,
+}
+
+impl AnalogOutSettings {
+    fn no_gain() -> f64 {
+        1.0
+    }
 }
 
 /// One range of the supply.
@@ -176,10 +194,14 @@ pub struct DigitalInSettings {
 }
 
 /// Supervision of an actuator's strokes.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ActuatorSettings {
     /// Longest time of a stroke before an alarm, ms.
     pub timeout_ms: f64,
+    /// Name of the input that a stroke to rest needs.
+    pub to_rest_needs: Option<String>,
+    /// Name of the input that a stroke away from rest needs.
+    pub to_end_needs: Option<String>,
 }
 
 /// A point of the sort axis.
@@ -200,4 +222,30 @@ pub struct BinSettings {
     pub x_mm: f64,
     /// Digital input whose event counter counts falling parts.
     pub beam: String,
+}
+
+/// The rack of a rig that a person loads and unloads.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct RackSettings {
+    /// Temperature of the rack below which the door may be unlocked, C.
+    pub unlock_below_c: f64,
+    /// Unloading lists, in the order in which a person unloads them.
+    pub lists: Vec<String>,
+}
+
+/// A socket of the rack.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct SocketSettings {
+    /// Module that reads the contact of the part in the socket.
+    pub module: String,
+    /// Channel, from 0.
+    pub channel: u8,
+    /// `low` when the bit reads 0 while the contact is closed; `high` when it reads 1.
+    pub active: String,
+    /// Number of the socket at the multiplexer.
+    pub select: u8,
+    /// Row on the plan of the rack, from 1.
+    pub row: u8,
+    /// Column on that plan, from 1.
+    pub column: u8,
 }

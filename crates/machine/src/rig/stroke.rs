@@ -2,6 +2,7 @@
 
 use super::fault::Fault;
 use super::settings::ActuatorSettings;
+use crate::guard::Actuator;
 use std::collections::BTreeMap;
 use units::Span;
 
@@ -22,6 +23,21 @@ named! {
         Gripper = "gripper",
         /// Sort axis.
         Axis = "axis",
+    }
+}
+
+impl ActuatorKey {
+    /// Returns the actuators that the valve of this stroke drives.
+    pub const fn actuators(self) -> &'static [Actuator] {
+        match self {
+            ActuatorKey::Escapement => &[Actuator::Escapement],
+            ActuatorKey::Pusher => &[Actuator::Pusher],
+            ActuatorKey::Clamp => &[Actuator::JawLeft, Actuator::JawRight],
+            ActuatorKey::ProbeLift => &[Actuator::ProbeLift],
+            ActuatorKey::SortZ => &[Actuator::SortZ],
+            ActuatorKey::Gripper => &[Actuator::Gripper],
+            ActuatorKey::Axis => &[Actuator::SortAxis],
+        }
     }
 }
 

@@ -3,15 +3,15 @@
 //! Only a checked [`Wiring`] exists (see [`super::resolve`]): every point has its own terminal on a suitable module,
 //! no two modules of a line share an address, and the reaction to the emergency stop is as short as the plant demands.
 
-use super::axis::AxisTable;
+use super::handling::Handling;
 use super::instruments::InstrumentWiring;
+use super::interlock::StrokeNeeds;
 use super::model::Model;
 use super::point::{
     AnalogInput, AnalogOutput, DigitalIn, DigitalInput, DigitalOut, DigitalOutput, GatedCounter,
     Quantity, Switch, Thermometer,
 };
 use super::settings::{BusSettings, SafetySettings};
-use super::stroke::StrokeLimits;
 use super::supply::SupplyRange;
 use dcon::{Address, Channel, DataFormat, SlewCode, TypeCode};
 use std::collections::BTreeSet;
@@ -114,23 +114,25 @@ pub struct Wiring {
     pub bus: BusSettings,
     /// Demands of the plant on the emergency stop.
     pub safety: SafetySettings,
-    /// Longest time of each stroke.
-    pub strokes: StrokeLimits,
-    /// Points of the sort axis and the bins at them.
-    pub axis: AxisTable,
+    /// Strokes that need an input.
+    pub interlocks: Vec<StrokeNeeds>,
+    /// How parts get to their test.
+    pub handling: Handling,
     /// Ranges of the supply, smallest first; empty without a source.
     pub supply_ranges: Vec<SupplyRange>,
     /// Range for which the gains hold; `None` for the gains of `config/rig.toml`, at factor 1.
     pub supply_range: Option<SupplyRange>,
-    /// Inputs of the machine, then of the fixtures, then beams.
-    pub(super) digital_in: Vec<(String, Terminal)>,
-    /// Outputs of the machine, then of the fixtures.
-    pub(super) digital_out: Vec<(Switch, Terminal)>,
+    /// Inputs of the machine, then those of the fixtures, then beams or contacts of sockets. An input that only the
+    /// other handling needs has no terminal.
+    pub(super) digital_in: Vec<(String, Option<Terminal>)>,
+    /// Outputs of the machine, then of the fixtures; as with inputs, some have no terminal.
+    pub(super) digital_out: Vec<(Switch, Option<Terminal>)>,
     pub(super) analog_in: Vec<(Quantity, AnalogTerminal)>,
     pub(super) analog_out: Vec<(&'static str, AnalogTerminal)>,
     pub(super) temperature: Vec<(&'static str, AnalogTerminal)>,
     pub(super) counter: Vec<(&'static str, AnalogTerminal)>,
-    /// Number of digital inputs before the beams: those of the machine and the fixtures.
+    /// Index of the first beam or contact of a socket in `digital_in`: the inputs before it are those of machine and
+    /// fixtures.
     pub(super) before_beams: usize,
 }
 
@@ -180,12 +182,36 @@ impl Wiring {
     }
 
     /// Returns the terminal of a digital input.
+    ///
+    /// # Panics
+    /// Panics for an input that only the other handling has.
     pub fn digital_in(&self, point: impl Into<DigitalInput>) -> Terminal {
+        let point = point.into();
+        let Some(terminal) = self.wired_in(point) else {
+            panic!("{} is not wired", self.input_name(point))
+        };
+        terminal
+    }
+
+    /// Returns the terminal of a digital input; `None` for one that only the other handling has.
+    pub fn wired_in(&self, point: impl Into<DigitalInput>) -> Option<Terminal> {
         self.digital_in[point.into().index()].1
     }
 
     /// Returns the terminal of a digital output.
+    ///
+    /// # Panics
+    /// Panics for an output that only the other handling has.
     pub fn digital_out(&self, point: impl Into<DigitalOutput>) -> Terminal {
+        let point = point.into();
+        let Some(terminal) = self.wired_out(point) else {
+            panic!("{} is not wired", self.switch(point).name)
+        };
+        terminal
+    }
+
+    /// Returns the terminal of a digital output; `None` for one that only the other handling has.
+    pub fn wired_out(&self, point: impl Into<DigitalOutput>) -> Option<Terminal> {
         self.digital_out[point.into().index()].1
     }
 
@@ -241,12 +267,14 @@ impl Wiring {
 
     /// Returns the digital input with this name; `None` when the rig lacks it.
     pub fn digital_input(&self, name: &str) -> Option<DigitalInput> {
-        named(self.digital_in.iter().map(|it| it.0.as_str()), name).map(DigitalInput::at)
+        let at = named(self.digital_in.iter().map(|it| it.0.as_str()), name)?;
+        self.digital_in[at].1.map(|_| DigitalInput::at(at))
     }
 
     /// Returns the digital output with this name; `None` when the rig lacks it.
     pub fn digital_output(&self, name: &str) -> Option<DigitalOutput> {
-        named(self.digital_out.iter().map(|it| it.0.name), name).map(DigitalOutput::at)
+        let at = named(self.digital_out.iter().map(|it| it.0.name), name)?;
+        self.digital_out[at].1.map(|_| DigitalOutput::at(at))
     }
 
     /// Returns the analog input with this name; `None` when the rig lacks it.
@@ -269,20 +297,23 @@ impl Wiring {
         named(self.counter.iter().map(|it| it.0), name).map(GatedCounter::at)
     }
 
-    /// Yields every digital input with its name, in the order in which pages show them: fixtures, machine, beams.
+    /// Yields every wired digital input with its name, in the order in which pages show them: fixtures, machine, beams or
+    /// sockets.
     pub fn digital_inputs(&self) -> impl Iterator<Item = (&str, DigitalInput)> {
         let (machine, all) = (DigitalIn::COUNT, self.digital_in.len());
         (machine..self.before_beams)
             .chain(0..machine)
             .chain(self.before_beams..all)
+            .filter(|at| self.digital_in[*at].1.is_some())
             .map(|at| (self.digital_in[at].0.as_str(), DigitalInput::at(at)))
     }
 
-    /// Yields every digital output with its name, in the order in which pages show them: fixtures, machine.
+    /// Yields every wired digital output with its name, in the order in which pages show them: fixtures, machine.
     pub fn digital_outputs(&self) -> impl Iterator<Item = (&'static str, DigitalOutput)> {
         let machine = DigitalOut::COUNT;
         (machine..self.digital_out.len())
             .chain(0..machine)
+            .filter(|at| self.digital_out[*at].1.is_some())
             .map(|at| (self.digital_out[at].0.name, DigitalOutput::at(at)))
     }
 
@@ -290,8 +321,9 @@ impl Wiring {
     pub fn signals(&self, module: ModuleId, bits: u16) -> impl Iterator<Item = (&str, bool)> {
         let inputs = self.digital_in.iter().map(|it| (it.0.as_str(), it.1));
         let outputs = self.digital_out.iter().map(|it| (it.0.name, it.1));
-        let own = move |it: &(&str, Terminal)| it.1.module == module;
-        let all = inputs.chain(outputs).filter(own);
+        let own =
+            move |it: (_, Option<Terminal>)| Some((it.0, it.1.filter(|it| it.module == module)?));
+        let all = inputs.chain(outputs).filter_map(own);
         all.map(move |(name, terminal)| (name, terminal.read(bits)))
     }
 
@@ -300,8 +332,10 @@ impl Wiring {
         let inputs = self.digital_in[DigitalIn::COUNT..self.before_beams].iter();
         let outputs = self.digital_out[DigitalOut::COUNT..].iter();
         let digital = inputs
-            .map(|it| it.1.module)
-            .chain(outputs.map(|it| it.1.module));
+            .map(|it| it.1)
+            .chain(outputs.map(|it| it.1))
+            .flatten()
+            .map(|it| it.module);
         let analog = self.analog_in.iter().map(|it| it.1.module);
         let other = [&self.analog_out, &self.temperature, &self.counter];
         let other = other.into_iter().flatten().map(|it| it.1.module);

@@ -43,7 +43,9 @@ impl Station {
             }
             Order::Step => {
                 self.may_step()?;
-                output.rig.motions.extend(self.line.stepwise.pop_front());
+                let own = self.line.feeder_mut();
+                let next = own.and_then(|own| own.stepwise.pop_front());
+                output.rig.motions.extend(next);
             }
             Order::LampTest => self.alarms.lamps.test(now),
             Order::Leave => {
@@ -77,7 +79,9 @@ impl Station {
                 scanned.map_err(Refused::Scan)?;
             }
             Order::Answer(prompt, choice) => {
-                if self.prompts.answer(&prompt, &choice)? {
+                let batch = self.line.batch_mut();
+                let answered = batch.is_some_and(|it| it.answer(&prompt, &choice));
+                if !answered && self.prompts.answer(&prompt, &choice)? {
                     self.leave(Ending::Stopped, now, output);
                 }
             }
@@ -117,7 +121,7 @@ impl Station {
             | Command::Unhold
             | Command::Unsuspend
             | Command::Complete
-                if self.prompt().is_some() =>
+                if self.prompts.open().is_some() =>
             {
                 Err(Refused::PromptOpen)
             }
@@ -160,7 +164,11 @@ impl Station {
         ) {
             return Err(Refused::NotAtRest(self.machine.state));
         }
-        if self.line.ledger.holds(Place::NEST) || self.line.ledger.holds(Place::Gripper) {
+        let held = |place: Place| match place {
+            Place::Nest(_) | Place::Gripper | Place::Socket(_) => true,
+            Place::Pocket | Place::Falling => false,
+        };
+        if self.line.ledger.each().any(|(place, _)| held(place)) {
             return Err(Refused::PartInside);
         }
         Ok(())
@@ -209,6 +217,9 @@ impl Station {
     /// # Errors
     /// Fails with the reason when no actuator may be jogged.
     pub fn may_jog(&self) -> Result<(), Refused> {
+        if self.line.feeder().is_none() {
+            return Err(Refused::NothingMoves);
+        }
         if self.prompt().is_some() {
             return Err(Refused::PromptOpen);
         }
@@ -218,7 +229,7 @@ impl Station {
         if self.machine.state != State::Idle {
             return Err(Refused::Unhomed(self.machine.state));
         }
-        if self.line.mechanism.moving().next().is_some() {
+        if self.line.is_moving() {
             return Err(Refused::StillMoving);
         }
         Ok(())
@@ -232,7 +243,8 @@ impl Station {
         if self.machine.mode != Mode::Maintenance {
             return Err(self.wrong_mode("step", Mode::Maintenance));
         }
-        if self.line.stepwise.is_empty() {
+        let own = self.line.feeder();
+        if own.is_none_or(|own| own.stepwise.is_empty()) {
             return Err(Refused::NoMotionWaits);
         }
         Ok(())
@@ -241,12 +253,15 @@ impl Station {
     /// Records that the motion that has just begun is a jog, after which the machine is no longer homed.
     pub fn jogged(&mut self, movement: Move) {
         self.line.homed = false;
-        self.line.mechanism.driven_by_hand(movement);
+        if let Some(own) = self.line.feeder_mut() {
+            own.mechanism.driven_by_hand(movement);
+        }
     }
 
     /// Returns how the last jog ended, once; `None` while it moves, or without a jog.
     pub fn take_jog_end(&mut self, now: RigTime, image: &Image) -> Option<HandEnd> {
-        self.line.mechanism.take_hand_end(now, image)
+        let own = self.line.feeder_mut()?;
+        own.mechanism.take_hand_end(now, image)
     }
 
     fn leave(&mut self, ending: Ending, now: RigTime, output: &mut TurnOutput) {

@@ -138,6 +138,44 @@ codes! {
     SupplyRange = "supply_range", Abort, Operator;
     /// A test has ended without proof that the socket is free of dangerous voltage.
     SocketLive = "socket_live", Abort, Operator;
+    /// The closed door of the rack does not report that it is locked.
+    DoorNotLocked = "door_not_locked", Abort, Operator;
+    /// The thermometer in the rack has had no usable reading for too long; the door stays locked.
+    RackUnread = "rack_unread", Abort, Operator;
+    /// The rack has not cooled in time; it goes on cooling behind the locked door.
+    CoolsSlowly = "cools_slowly", Nothing, Itself;
+    /// A thermometer of the air has no usable reading.
+    ThermometerBroken = "thermometer_broken", Hold, Operator;
+    /// A thermometer moves faster than the air can.
+    ThermometerJump = "thermometer_jump", Hold, Operator;
+    /// The two thermometers of the air disagree.
+    ThermometersDiffer = "thermometers_differ", Hold, Operator;
+    /// A thermometer stands still under power.
+    ThermometerStuck = "thermometer_stuck", Hold, Operator;
+    /// The air does not warm or cool as its power demands.
+    EnergyBalance = "energy_balance", Hold, Operator;
+    /// The air warms without power.
+    HeatWithoutCommand = "heat_without_command", Hold, Operator;
+    /// The air is far above its set point.
+    OverSetPoint = "over_set_point", Hold, Operator;
+    /// The air does not follow a rising set point.
+    RampNotReached = "ramp_not_reached", Hold, Operator;
+    /// The air warms or cools faster than the recipe allows.
+    RampTooFast = "ramp_too_fast", Hold, Operator;
+    /// The air does not follow a falling set point.
+    CoolingTooSlow = "cooling_too_slow", Hold, Operator;
+    /// The answer of the air to its power has no usable figures.
+    HeatingNotIdentified = "heating_not_identified", Hold, Operator;
+    /// The limiter on the heater has tripped.
+    LimiterTripped = "limiter_tripped", Hold, Operator;
+    /// The airflow switch is open while the fan is on.
+    AirflowLost = "airflow_lost", Hold, Operator;
+    /// The mains of the heater have failed.
+    MainsLost = "mains_lost", Hold, Operator;
+    /// The contacts of sockets were open before heating.
+    SocketsOpen = "sockets_open", Nothing, Itself;
+    /// The lag of a lot is far from the one that earlier batches or the recipe state.
+    LagUnexpected = "lag_unexpected", Nothing, Itself;
     /// References or reference parts do not agree with their certificates.
     CalibrationFailed = "calibration_failed", Abort, Operator;
     /// The calibration has expired during the lot.

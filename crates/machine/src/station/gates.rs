@@ -234,7 +234,8 @@ impl Station {
 
     /// Returns the use counts of the wearing parts in this run.
     pub fn uses(&self) -> Uses {
-        self.line.mechanism.uses()
+        let own = self.line.feeder();
+        own.map_or_else(Uses::default, |own| own.mechanism.uses())
     }
 
     /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot.
@@ -252,7 +253,7 @@ impl Station {
 
     /// Returns the alarms of the counters that have reached their limit, each once.
     pub(super) fn worn(&mut self) -> Vec<Alarm> {
-        let uses = self.plan.worn.with(self.line.mechanism.uses());
+        let uses = self.plan.worn.with(self.uses());
         let limits = &self.plan.lot.wear;
         let each = [
             (Wearing::Probes, uses.probe_touches, limits.probe_touches),

@@ -49,14 +49,15 @@ use crate::guard::{Motion, Situation};
 use crate::handling::inside::Inside;
 use crate::handling::serial::Serials;
 use crate::handling::wear::Uses;
-use crate::handling::{Feeder, Ledger, Mechanism, Move};
+use crate::handling::{Batch, Feeder, Ledger, Mechanism, Move};
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
+use crate::rig::rack::Rack;
 pub use activity::Activity;
 use annunciator::Annunciator;
 use gates::{Gates, LotSettings};
 use lamps::Lamps;
-use line::Line;
+use line::{FeederLine, Handling, Line};
 use machine::Machine;
 use packml::{Mode, State};
 use panel::Panel;
@@ -166,13 +167,23 @@ struct Alarms {
 }
 
 impl Station {
-    /// Returns a station before the first reading of its sensors.
+    /// Returns the station of a rig with a feeder, before the first reading of its sensors.
     pub fn new(plan: Plan, device: Device, table: AxisTable, mechanism: Mechanism) -> Self {
+        let own = FeederLine::new(Feeder::new(table), mechanism);
+        Self::of(plan, device, Handling::Feeder(Box::new(own)))
+    }
+
+    /// Returns the station of a rig with a rack, before the first reading of its sensors.
+    pub fn with_rack(plan: Plan, device: Device, rack: Rack) -> Self {
+        Self::of(plan, device, Handling::Batch(Box::new(Batch::new(rack))))
+    }
+
+    fn of(plan: Plan, device: Device, handling: Handling) -> Self {
         let ledger = Ledger::after(plan.left);
         let serials = plan.serials.clone();
         let mut station = Self {
             machine: Machine::new(plan.between_lots.unwrap_or(State::Stopped)),
-            line: Line::new(Feeder::new(table), ledger, mechanism, serials),
+            line: Line::new(handling, ledger, serials),
             lot: LotControl {
                 gates: Gates::default(),
                 reference_planned: 0,
@@ -201,7 +212,8 @@ impl Station {
 
     /// Returns the prompt that waits for its answer, if there is one.
     pub fn prompt(&self) -> Option<&Prompt> {
-        self.prompts.open()
+        let of_batch = || self.line.batch().and_then(Batch::prompt);
+        self.prompts.open().or_else(of_batch)
     }
 
     /// Returns the serial numbers of the lot.
@@ -209,9 +221,9 @@ impl Station {
         &self.line.serials
     }
 
-    /// Returns the mechanism: end sensors and motions.
-    pub fn mechanism(&self) -> &Mechanism {
-        &self.line.mechanism
+    /// Returns the mechanism: end sensors and motions; `None` on a rig with a rack.
+    pub fn mechanism(&self) -> Option<&Mechanism> {
+        self.line.feeder().map(|own| &own.mechanism)
     }
 
     /// Returns the list of alarms.
@@ -236,7 +248,7 @@ impl Station {
 
     /// Returns the counts of strokes, touches and bounces since the program started, by name.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
-        self.line.mechanism.wear()
+        self.mechanism().map_or_else(Vec::new, Mechanism::wear)
     }
 
     /// Returns the PackML state of the rig.
@@ -257,8 +269,8 @@ impl Station {
             State::Resetting if !self.line.homed => Activity::Homing,
             State::Resetting => Activity::Discharging,
             State::Starting => Activity::Calibrating,
-            State::Execute | State::Completing => match self.line.feeder.test() {
-                Some(test) => Activity::Testing(test.stage()),
+            State::Execute | State::Completing => match self.line.stage() {
+                Some(stage) => Activity::Testing(stage),
                 None if self.lot.began || self.lot.reference_left.is_empty() => Activity::Running,
                 None => Activity::ReferenceParts,
             },
@@ -285,7 +297,7 @@ impl Station {
             return output;
         }
         self.machine.turn(now);
-        let ordered = inputs.orders.len();
+        let (ordered, image) = (inputs.orders.len(), inputs.image);
         if inputs.verified {
             // Samples from before the verification are stale, and must raise no alarm.
             (self.alarms.sensed, self.machine.began) = (false, Some(now));
@@ -294,6 +306,9 @@ impl Station {
         for order in std::mem::take(&mut inputs.orders) {
             let answer = self.order(order, now, &mut output);
             output.answers.push(answer);
+        }
+        if let Some(batch) = self.line.batch_mut() {
+            batch.deliver(inputs.job.take());
         }
         let stuck = self.pressed(now, inputs.image, &mut output);
         self.prompts.turn();
@@ -307,8 +322,8 @@ impl Station {
             self.act(now, inputs, &mut output);
             self.raise_all(now, &mut output);
         }
-        output.record.prompted = self.prompts.opened().cloned();
-        self.line.postpone(now, &mut output);
+        output.record.prompted = self.opened_prompt();
+        self.line.postpone(now, image, &mut output);
         self.alarms.annunciator.unshelve(now);
         self.show(now, &mut output);
         self.line.check();
@@ -319,18 +334,24 @@ impl Station {
         output
     }
 
+    /// Returns the prompt that has opened in this turn, of the lot or of the batch.
+    fn opened_prompt(&mut self) -> Option<Prompt> {
+        let of_lot = self.prompts.opened().cloned();
+        of_lot.or_else(|| self.line.batch_mut()?.take_opened())
+    }
+
     /// Records a motion that the guard has cleared and the rig has driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.line.driven(movement, now, image);
     }
 
-    /// Returns the motion in the terms of the guard.
-    pub fn motion(&self, movement: Move) -> Motion {
-        movement.motion(self.line.mechanism.strokes())
+    /// Returns the motion in the terms of the guard; `None` on a rig with a rack.
+    pub fn motion(&self, movement: Move) -> Option<Motion> {
+        Some(movement.motion(self.mechanism()?.strokes()))
     }
 
-    /// Returns the situation for the guard.
-    pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
+    /// Returns the situation for the guard; `None` on a rig with a rack.
+    pub fn situation(&self, now: RigTime, image: &Image) -> Option<Situation> {
         self.line.situation(now, image)
     }
 }

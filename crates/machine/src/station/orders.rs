@@ -77,6 +77,8 @@ pub enum Refused {
     NotArrived,
     /// No motion waits for a step.
     NoMotionWaits,
+    /// The rig has a rack, and nothing on it moves.
+    NothingMoves,
     /// The cause of this alarm remains.
     CauseRemains(Box<Alarm>),
     /// The list has no alarm with this code.
@@ -136,6 +138,7 @@ impl Refused {
             Self::StillMoving => of("still_moving"),
             Self::NotArrived => of("not_arrived"),
             Self::NoMotionWaits => of("no_motion_waits"),
+            Self::NothingMoves => of("nothing_moves"),
             Self::CauseRemains(alarm) => alarm
                 .inside("cause_remains")
                 .with("next", alarm.code.text_id()),

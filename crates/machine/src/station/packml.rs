@@ -112,7 +112,7 @@ named! {
     }
 }
 
-/// Returns the next step towards `command`, which `state` does not allow.
+/// Returns what a person does next towards `command`, which the machine refuses in `state`.
 pub fn next_step(command: Command, state: State) -> NextStep {
     match (state, command) {
         (

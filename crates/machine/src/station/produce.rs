@@ -1,6 +1,7 @@
 //! One turn of the sequence that feeds, tests and sorts parts.
 
 use super::Station;
+use super::line::BatchTerms;
 use super::packml::Mode;
 use super::turn::{Inputs, TurnOutput};
 use crate::dut::prompt::PromptMoment;
@@ -16,11 +17,47 @@ impl Station {
     pub(super) fn produce(
         &mut self,
         now: RigTime,
-        mut inputs: Inputs,
+        inputs: Inputs,
         output: &mut TurnOutput,
         permits: Permits,
     ) {
         self.note_begin(output);
+        match self.line.batch() {
+            Some(_) => self.produce_batch(now, inputs, output, permits),
+            None => self.feed(now, inputs, output, permits),
+        }
+        self.learn(output);
+    }
+
+    /// Performs one turn of the batch.
+    fn produce_batch(
+        &mut self,
+        now: RigTime,
+        inputs: Inputs,
+        output: &mut TurnOutput,
+        permits: Permits,
+    ) {
+        let lacking = self.lacking();
+        let terms = BatchTerms {
+            device: &self.device,
+            lacking,
+            attended: self.plan.attended,
+            begins: permits.release,
+        };
+        if let Some((batch, mut turn)) = self.line.batch_at(now, &inputs, output, terms) {
+            batch.step(&mut turn);
+        }
+        output.notes.take_over();
+    }
+
+    /// Performs one turn of the feeder.
+    fn feed(
+        &mut self,
+        now: RigTime,
+        mut inputs: Inputs,
+        output: &mut TurnOutput,
+        permits: Permits,
+    ) {
         let job = inputs.job.take();
         let teaching = self.teaching().map(str::to_owned);
         let terms = TestTerms {
@@ -30,18 +67,21 @@ impl Station {
         };
         let before = output.rig.motions.len();
         let resting = self.machine.is_coming_to_rest();
-        let (feeder, _, mut turn) =
-            self.line
-                .at(now, &inputs, output, &mut self.lot.reference_left, resting);
-        if feeder.step(&mut turn, job, terms, permits) {
-            self.line.mechanism.new_part();
-        }
+        let reference = &mut self.lot.reference_left;
+        let at = self.line.at(now, &inputs, output, reference, resting);
+        let is_new =
+            at.is_some_and(|(feeder, _, mut turn)| feeder.step(&mut turn, job, terms, permits));
         output.notes.take_over();
+        let Some(own) = self.line.feeder_mut() else {
+            return;
+        };
+        if is_new {
+            own.mechanism.new_part();
+        }
         if self.machine.mode == Mode::Maintenance {
             let motions = output.rig.motions.drain(before..);
-            self.line.stepwise.extend(motions);
+            own.stepwise.extend(motions);
         }
-        self.learn(output);
     }
 
     fn note_begin(&mut self, output: &mut TurnOutput) {
@@ -75,14 +115,18 @@ impl Station {
 
     /// Returns true when no part is in nest, fingers or chute, every row is safely on the disk, and nothing moves.
     pub(super) fn rests_empty(&self, recorded: u64, output: &TurnOutput) -> bool {
-        let moving = self.line.mechanism.moving().next().is_some();
+        let moving = self.line.is_moving();
         self.line.is_finished(false, recorded, output) && !moving && output.rig.motions.is_empty()
     }
 
     /// Returns true while the magazine is to deliver more parts of the lot.
     pub(super) fn expects_more(&self) -> bool {
-        self.plan
-            .count
-            .is_none_or(|count| self.line.ledger.own_parts() < self.lot.reference_planned + count)
+        self.lacking().is_none_or(|lacking| lacking > 0)
+    }
+
+    /// Returns the number of parts that the lot still lacks; `None` for an endless lot.
+    fn lacking(&self) -> Option<u64> {
+        let planned = self.lot.reference_planned + self.plan.count?;
+        Some(planned.saturating_sub(self.line.ledger.own_parts()))
     }
 }

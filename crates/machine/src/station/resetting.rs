@@ -1,6 +1,8 @@
-//! The state `Resetting`: homes every actuator, then resumes the sequence to discharge the parts found inside.
+//! The state `Resetting`. With a feeder it homes every actuator, then resumes the sequence to discharge the parts found
+//! inside; with a rack it cools the rack and has interrupted parts unloaded.
 
 use super::Station;
+use super::line::{BatchTerms, Handling};
 use super::turn::{Inputs, TurnOutput};
 use crate::dut::Reason;
 use crate::handling::Place;
@@ -20,24 +22,49 @@ impl Station {
         if self.line.homed {
             return self.finish(now, inputs, output, false);
         }
-        if self.line.recovery.drive_reset(now) {
-            self.line.mechanism.drive_reset(now);
+        if self.line.batch().is_some() {
+            return self.home_rack(now, inputs, output);
+        }
+        if let Some(own) = self.line.feeder_mut()
+            && own.recovery.drive_reset(now)
+        {
+            own.mechanism.drive_reset(now);
         }
         let reference = &mut self.lot.reference_left;
-        let (feeder, recovery, mut turn) = self.line.at(now, &inputs, output, reference, false);
-        let home = recovery.step(&mut turn, feeder.is_releasing());
+        let at = self.line.at(now, &inputs, output, reference, false);
+        let home = at.is_some_and(|(feeder, recovery, mut turn)| {
+            recovery.step(&mut turn, feeder.is_releasing())
+        });
         output.notes.take_over();
         if home {
-            let moves = self.line.mechanism.moving().next();
-            assert_eq!(moves, None, "home while an actuator moves");
+            assert!(!self.line.is_moving(), "home while an actuator moves");
             self.line.homed = true;
             self.resume(now, output);
         }
     }
 
+    /// Cools the rack and lets a person take out the parts of an interrupted batch.
+    fn home_rack(&mut self, now: RigTime, inputs: Inputs, output: &mut TurnOutput) {
+        let terms = BatchTerms {
+            device: &self.device,
+            lacking: None,
+            attended: self.plan.attended,
+            begins: false,
+        };
+        let at = self.line.batch_at(now, &inputs, output, terms);
+        let home = at.is_some_and(|(batch, mut turn)| batch.home(&mut turn));
+        output.notes.take_over();
+        if home {
+            self.line.homed = true;
+            output.rig.wake_at = Some(now);
+        }
+    }
+
     /// Resumes the sequence with the parts inside.
     fn resume(&mut self, now: RigTime, output: &mut TurnOutput) {
-        self.line.feeder.resume(&self.line.ledger);
+        if let Handling::Feeder(own) = &mut self.line.handling {
+            own.feeder.resume(&self.line.ledger);
+        }
         if self.lot.gates.is_checking() {
             self.begin_check();
         }

@@ -2,6 +2,7 @@
 
 use super::Station;
 use super::catalogue::{self, AlarmCode, ClearedBy, Reaction};
+use super::line::Handling;
 use super::orders::Refused;
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
@@ -24,11 +25,16 @@ pub(super) const FIRST_SCAN: Span = Span::ms(3000);
 /// Time for which a beam must be dark for its bin to count as full; a falling part darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
-/// Safety inputs, each with the alarm of its open contact.
-const SAFETY_INPUTS: [(DigitalIn, AlarmCode); 3] = [
+/// Safety inputs of a rig with a feeder, each with the alarm for its open contact.
+const FEEDER_INPUTS: [(DigitalIn, AlarmCode); 3] = [
     (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
     (DigitalIn::DoorClosed, AlarmCode::DoorOpen),
     (DigitalIn::AirOk, AlarmCode::AirLost),
+];
+/// Safety inputs of a rig with a rack, which has no compressed air, each with its alarm.
+const RACK_INPUTS: [(DigitalIn, AlarmCode); 2] = [
+    (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
+    (DigitalIn::DoorClosed, AlarmCode::DoorOpen),
 ];
 /// Longest time from the closing of the emergency-stop chain to full air pressure.
 const PRESSURE_RETURNS: Span = Span::ms(2000);
@@ -43,10 +49,7 @@ impl Station {
         output: &mut TurnOutput,
     ) {
         self.line.serials.readings(&inputs.readings);
-        let mut found = self.line.mechanism.update(now, inputs.image);
-        output.rig.motions.extend(found.motions);
-        output.rig.restart_check = self.line.mechanism.needs_restart_check(now);
-        self.still_in_nest(now, inputs.image, &mut found.trouble);
+        let found = self.watch_mechanism(now, inputs.image, output);
         let mut there = self.safety(now, inputs);
         there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
@@ -56,31 +59,50 @@ impl Station {
         self.alarms.annunciator.sensed(&there);
         let trouble = &mut output.notes.trouble;
         if !packml::is_aborted(self.machine.state) {
-            trouble.extend(found.trouble.into_iter().map(Alarm::from));
+            trouble.extend(found.into_iter().map(Alarm::from));
         }
         trouble.extend(inputs.bus.iter().cloned());
         trouble.extend(there);
         trouble.extend(self.worn());
         let reference = &mut self.lot.reference_left;
-        let (feeder, _, mut turn) = self.line.at(now, inputs, output, reference, false);
-        feeder.confirm(&mut turn);
+        if let Some((feeder, _, mut turn)) = self.line.at(now, inputs, output, reference, false) {
+            feeder.confirm(&mut turn);
+        }
         output.notes.take_over();
         for landed in &output.record.parts.landed {
             let serial = landed.part.serial.as_ref();
             self.line.serials.landed(serial, landed.bin);
         }
-        if !self.line.dark.is_empty() {
+        let own = self.line.feeder();
+        if own.is_some_and(|own| !own.dark.is_empty()) {
             self.alarms.timeouts.wait_for_bin();
         }
         if inputs.history == HistoryState::Waiting {
             self.alarms.timeouts.forget();
         }
-        let feeder = &self.line.feeder;
+        let feeder = self.line.feeder().map(|own| &own.feeder);
         let late = self
             .alarms
             .timeouts
             .look(now, self.machine.state, self.machine.mode, feeder);
         output.notes.trouble.extend(late);
+    }
+
+    /// Checks end sensors and motions of a feeder; returns the troubles.
+    fn watch_mechanism(
+        &mut self,
+        now: RigTime,
+        image: &Image,
+        output: &mut TurnOutput,
+    ) -> Vec<Trouble> {
+        let Some(own) = self.line.feeder_mut() else {
+            return Vec::new();
+        };
+        let mut found = own.mechanism.update(now, image);
+        output.rig.motions.extend(found.motions);
+        output.rig.restart_check = own.mechanism.needs_restart_check(now);
+        self.still_in_nest(now, image, &mut found.trouble);
+        found.trouble
     }
 
     /// Reports a part as stuck in the nest, instead of dropped, if the gripper lost it before the handover.
@@ -99,7 +121,8 @@ impl Station {
         let image = inputs.image;
         let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
-        for (point, code) in SAFETY_INPUTS {
+        let door_may_open = self.line.batch().is_some_and(|it| !it.needs_closed_door());
+        for (point, code) in self.safety_inputs().iter().copied() {
             let seen = match point {
                 DigitalIn::EmergencyStopOk => image.emergency_stop_ok(now),
                 other => image.input(other, now, SENSOR_AGE),
@@ -110,15 +133,19 @@ impl Station {
             match seen {
                 Some(true) => {}
                 Some(false) if point == DigitalIn::AirOk && self.is_vented(now) => {}
+                Some(false) if point == DigitalIn::DoorClosed && door_may_open => {}
                 Some(false) => alarms.push(code.into()),
                 None => unread.push(point),
             }
         }
-        let others = [
-            DigitalIn::SortZUp,
-            DigitalIn::NestPresent,
-            DigitalIn::GripperPart,
-        ];
+        let others: &[DigitalIn] = match self.line.handling {
+            Handling::Feeder(_) => &[
+                DigitalIn::SortZUp,
+                DigitalIn::NestPresent,
+                DigitalIn::GripperPart,
+            ],
+            Handling::Batch(_) => &[DigitalIn::DoorLocked],
+        };
         let all = unread.is_empty()
             && others
                 .iter()
@@ -149,16 +176,19 @@ impl Station {
 
     fn full_bins(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let mut alarms = Vec::new();
-        for (bin, beam) in self.line.feeder.beams() {
+        let Some(own) = self.line.feeder_mut() else {
+            return alarms;
+        };
+        for (bin, beam) in own.feeder.beams() {
             let dark = image.input(beam, now, SENSOR_AGE) == Some(true);
-            let since = self.line.dark.iter().find(|(known, _)| *known == beam);
+            let since = own.dark.iter().find(|(known, _)| *known == beam);
             match (dark, since.map(|(_, since)| *since)) {
-                (true, None) => self.line.dark.push((beam, now)),
+                (true, None) => own.dark.push((beam, now)),
                 (true, Some(since)) if now.since(since) >= FULL => {
                     alarms.push(Alarm::bin_full(bin));
                 }
                 (true, Some(_)) | (false, None) => {}
-                (false, Some(_)) => self.line.dark.retain(|(known, _)| *known != beam),
+                (false, Some(_)) => own.dark.retain(|(known, _)| *known != beam),
             }
         }
         alarms
@@ -183,7 +213,10 @@ impl Station {
         now: RigTime,
         output: &mut TurnOutput,
     ) {
-        if self.machine.state == State::Resetting && self.line.recovery.refused(movement) {
+        if self.machine.state == State::Resetting
+            && let Some(own) = self.line.feeder_mut()
+            && own.recovery.refused(movement)
+        {
             return;
         }
         output.notes.trouble.push(Alarm::refused(movement, refusal));
@@ -213,6 +246,9 @@ impl Station {
             .alarms
             .lamps
             .show(now, self.machine.state, listed, output.rig.safe);
+        // A rack has lamps of its own, which the batch switches.
+        let has_stack = self.line.feeder().is_some();
+        let stack = stack.into_iter().filter(|_| has_stack);
         output.rig.outputs.extend(stack);
         output.record.alarms_changed |= self.alarms.annunciator.take_changed();
     }
@@ -270,7 +306,7 @@ impl Station {
         output.rig.job = None;
         output.rig.safe = true;
         self.interrupt(why, now, output);
-        self.line.cut_off();
+        self.line.cut_off(now);
     }
 
     /// Interrupts the parts in nest and gripper, so that they go to retest; the row of a judged part records this.
@@ -287,7 +323,9 @@ impl Station {
                 continue;
             }
             let mut judged = Judged::untested(part.clone(), Reason::interrupted(&why), now);
-            if let Some(test) = self.line.feeder.test() {
+            if let Handling::Feeder(own) = &self.line.handling
+                && let Some(test) = own.feeder.test()
+            {
                 judged.record = test.record();
                 judged.judgements = test.judgements();
             }
@@ -303,8 +341,19 @@ impl Station {
     }
 }
 
-/// Returns true when every safety input has a sample later than `since`.
-pub(super) fn safety_was_read(image: &Image, since: RigTime) -> bool {
-    let read = |(point, _)| image.input_at(point).is_some_and(|at| at > since);
-    SAFETY_INPUTS.into_iter().all(read)
+impl Station {
+    /// Returns the safety inputs that this rig has, each with the alarm for its open contact.
+    fn safety_inputs(&self) -> &'static [(DigitalIn, AlarmCode)] {
+        match self.line.handling {
+            Handling::Feeder(_) => &FEEDER_INPUTS,
+            Handling::Batch(_) => &RACK_INPUTS,
+        }
+    }
+
+    /// Returns true when every safety input has a sample later than `since`.
+    pub(super) fn safety_was_read(&self, image: &Image, since: RigTime) -> bool {
+        let read =
+            |(point, _): &(DigitalIn, _)| image.input_at(*point).is_some_and(|at| at > since);
+        self.safety_inputs().iter().all(read)
+    }
 }

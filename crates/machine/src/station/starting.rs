@@ -1,6 +1,7 @@
 //! The state `Starting`: without a calibration the probes rise in the empty nest and the references are measured.
 
 use super::Station;
+use super::line::FeederLine;
 use super::trouble::Alarm;
 use super::turn::{Inputs, TurnOutput};
 use crate::dut::prompt::PromptMoment;
@@ -25,7 +26,8 @@ pub(super) enum Start {
 impl Station {
     /// Performs a turn of `Starting`.
     pub(super) fn begin(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
-        if self.plan.calibrated || self.referenced {
+        let is_rack = self.line.batch().is_some();
+        if self.plan.calibrated || self.referenced || is_rack {
             return self.done(now, output);
         }
         if matches!(self.start, Start::Begin) && self.prompts.asks(PromptMoment::BeforeCalibration)
@@ -57,8 +59,8 @@ impl Station {
     }
 
     fn has_arrived(&self, movement: Move, now: RigTime, inputs: &Inputs) -> bool {
-        let mechanism = &self.line.mechanism;
-        mechanism.has_arrived(movement, now, inputs.image)
+        let arrived = |own: &FeederLine| own.mechanism.has_arrived(movement, now, inputs.image);
+        self.line.feeder().is_some_and(arrived)
     }
 
     fn measure(

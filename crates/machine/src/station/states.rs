@@ -2,8 +2,9 @@
 
 use super::Station;
 use super::catalogue::{AlarmCode, Reaction};
+use super::line::Handling;
 use super::packml::{self, Command, On, State};
-use super::safety::{FIRST_SCAN, safety_was_read};
+use super::safety::FIRST_SCAN;
 use super::starting::Start;
 use super::trouble::Alarm;
 use super::turn::{Ending, Inputs, TurnOutput};
@@ -113,7 +114,10 @@ impl Station {
         output.rig.wake_at = Some(now);
         match to {
             State::Resetting => {
-                self.line.recovery = Recovery::default();
+                match &mut self.line.handling {
+                    Handling::Feeder(own) => own.recovery = Recovery::default(),
+                    Handling::Batch(batch) => batch.begin_home(now, &self.device),
+                }
                 self.line.homed = false;
             }
             State::Starting => {
@@ -124,14 +128,17 @@ impl Station {
                 (self.machine.verify_requested, self.machine.verified) = (false, None)
             }
             State::Stopped | State::Complete => self.make_safe("stopped", now, output),
+            State::Held | State::Suspended => {
+                if let Handling::Batch(batch) = &mut self.line.handling {
+                    batch.rest();
+                }
+            }
             State::Idle
             | State::Execute
             | State::Completing
             | State::Holding
-            | State::Held
             | State::Unholding
             | State::Suspending
-            | State::Suspended
             | State::Unsuspending
             | State::Stopping
             | State::Aborting
@@ -243,7 +250,7 @@ impl Station {
         }
         if let Some(at) = self.machine.verified {
             assert!(at <= now, "verified in the future");
-            if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
+            if self.safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
                 self.done(now, output);
             }
         } else if !self.machine.verify_requested {

@@ -52,15 +52,16 @@ impl Timeouts {
         self.since.clear();
     }
 
-    /// Returns the alarm of a step that has exceeded its timeout, if there is one; of several, that of the step last in
-    /// the feeder.
+    /// Returns the alarm of a step that has exceeded its timeout, if there is one; of several steps, the one furthest
+    /// along the feeder. A rack has its timeouts in the batch.
     pub fn look(
         &mut self,
         now: RigTime,
         state: State,
         mode: Mode,
-        feeder: &Feeder,
+        feeder: Option<&Feeder>,
     ) -> Option<Alarm> {
+        let feeder = feeder?;
         if !runs(state) || mode == Mode::Maintenance {
             self.forget();
             return None;

@@ -4,6 +4,7 @@ mod parts;
 
 use super::catalogue::AlarmCode;
 use crate::dut::Reason;
+use crate::dut::batch::BatchTrouble;
 use crate::dut::promise::Broken;
 use crate::handling::Move;
 use crate::handling::trouble::Trouble;
@@ -50,7 +51,43 @@ impl From<Trouble> for Alarm {
             Trouble::Stuck => AlarmCode::PartStuck.into(),
             Trouble::SupplyRange(mismatch) => Self::supply_range(mismatch),
             Trouble::SocketLive => AlarmCode::SocketLive.into(),
+            Trouble::DoorNotLocked => AlarmCode::DoorNotLocked.into(),
+            Trouble::RackUnread => AlarmCode::RackUnread.into(),
+            Trouble::CoolsSlowly(after) => {
+                Self::from(AlarmCode::CoolsSlowly).with("minutes", after.0 / 60_000_000)
+            }
+            Trouble::Batch(met) => met.into(),
+            Trouble::TooLong(step, waited) => Self::step_too_long(step, waited),
             Trouble::ReferenceRepeated(serial, why) => Self::reference_repeated(&serial, &why),
+        }
+    }
+}
+
+impl From<BatchTrouble> for Alarm {
+    fn from(met: BatchTrouble) -> Self {
+        match met {
+            BatchTrouble::ThermometerBroken => AlarmCode::ThermometerBroken.into(),
+            BatchTrouble::ThermometerJump => AlarmCode::ThermometerJump.into(),
+            BatchTrouble::ThermometersDiffer => AlarmCode::ThermometersDiffer.into(),
+            BatchTrouble::ThermometerStuck => AlarmCode::ThermometerStuck.into(),
+            BatchTrouble::EnergyBalance => AlarmCode::EnergyBalance.into(),
+            BatchTrouble::HeatWithoutCommand => AlarmCode::HeatWithoutCommand.into(),
+            BatchTrouble::OverSetPoint => AlarmCode::OverSetPoint.into(),
+            BatchTrouble::RampNotReached => AlarmCode::RampNotReached.into(),
+            BatchTrouble::RampTooFast => AlarmCode::RampTooFast.into(),
+            BatchTrouble::CoolingTooSlow => AlarmCode::CoolingTooSlow.into(),
+            BatchTrouble::NotIdentified => AlarmCode::HeatingNotIdentified.into(),
+            BatchTrouble::LimiterTripped => AlarmCode::LimiterTripped.into(),
+            BatchTrouble::AirflowLost => AlarmCode::AirflowLost.into(),
+            BatchTrouble::MainsLost => AlarmCode::MainsLost.into(),
+            BatchTrouble::SocketsOpen(sockets) => {
+                Self::from(AlarmCode::SocketsOpen).with("sockets", sockets)
+            }
+            BatchTrouble::LagUnexpected(found_s, expected_s) => {
+                Self::from(AlarmCode::LagUnexpected)
+                    .with("found_s", found_s)
+                    .with("expected_s", expected_s)
+            }
         }
     }
 }

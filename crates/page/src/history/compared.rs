@@ -3,9 +3,10 @@
 
 use super::super::error::{ApiError, JsonResult};
 use super::super::router::App;
-use super::members::{OneParameter, Printed, Runs, TimeSpan, filter, language};
+use super::members::{OneParameter, Printed, Runs, TimeSpan, filter};
 use super::paper::{Page, page};
 use crate::asked::{Asked, members};
+use crate::language::Preferred;
 use axum::Json;
 use axum::extract::State;
 use history::inquiry::comparison::{Comparison, compare};
@@ -46,10 +47,11 @@ pub(crate) async fn lots(
 /// `GET /api/history/report/comparison`.
 pub(crate) async fn printed(
     State(app): App,
+    preferred: Preferred,
     Asked((of, lots, printed)): Asked<(OneParameter, OfLots, Printed)>,
 ) -> Result<Page, ApiError> {
     page(app, move |archive| {
-        let on = paper::paper_of(archive, &Filter::default(), language(printed.lang))?;
+        let on = paper::paper_of(archive, &Filter::default(), preferred.unless(printed.lang))?;
         Ok(comparison(&on, &compared(archive, &of, &lots)?))
     })
     .await

@@ -6,9 +6,10 @@
 use super::super::error::{ApiError, blocking};
 use super::super::router::App;
 use super::feed;
-use super::members::{Printed, filter, language};
+use super::members::{Printed, filter};
 use crate::answers::{As, Csv, Sheet};
 use crate::asked::Asked;
+use crate::language::Preferred;
 use axum::extract::State;
 use axum::http::HeaderName;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
@@ -64,6 +65,7 @@ pub(crate) async fn csv(
 /// `GET /api/history/export.xlsx`.
 pub(crate) async fn xlsx(
     State(app): App,
+    preferred: Preferred,
     Asked((asked, printed)): Asked<(super::Filtered, Printed)>,
 ) -> Result<As<Sheet, (Saved, Vec<u8>)>, ApiError> {
     let filter = filter(asked);
@@ -79,7 +81,7 @@ pub(crate) async fn xlsx(
             );
             return Err(InquiryError::member("limit", reason).into());
         }
-        let paper = paper::paper_of(archive, &filter, language(printed.lang))?;
+        let paper = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         let mut book = export::spreadsheet(archive, &filter, &keys, &paper, || {})?;
         Ok(book.save_to_buffer().map_err(InquiryError::from)?)
     };

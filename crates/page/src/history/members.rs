@@ -129,7 +129,7 @@ pub(crate) struct Charting {
 /// A printed page or a spreadsheet.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct Printed {
-    /// Language, `zh` (when absent) or `en`.
+    /// Language, `zh` or `en`; when absent, that of `Accept-Language`, without it English.
     #[param(inline)]
     pub lang: Option<Lang>,
 }
@@ -239,9 +239,4 @@ impl Charting {
         let last = ApiError::ranged("last", self.last, SHOWN, MOST_SHOWN)?;
         Ok(usize::try_from(last).unwrap_or(usize::MAX))
     }
-}
-
-/// Returns the language of a printed report, Chinese by default.
-pub(crate) fn language(asked: Option<Lang>) -> Lang {
-    asked.unwrap_or(Lang::Zh)
 }

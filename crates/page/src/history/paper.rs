@@ -2,11 +2,10 @@
 
 use super::super::error::ApiError;
 use super::super::router::{App, AppState};
-use super::members::{
-    Charting, OfParts, OneLot, Paging, Printed, Runs, TimeSpan, filter, language,
-};
+use super::members::{Charting, OfParts, OneLot, Paging, Printed, Runs, TimeSpan, filter};
 use crate::answers::{self, As};
 use crate::asked::{Asked, members};
+use crate::language::Preferred;
 use axum::extract::State;
 use axum::http::HeaderName;
 use axum::http::header::CONTENT_SECURITY_POLICY;
@@ -49,11 +48,12 @@ members!(OfReport, OfCertificate);
 /// `GET /api/history/report/lot`.
 pub(crate) async fn lot(
     State(app): App,
+    preferred: Preferred,
     Asked((lot, printed, own)): Asked<(OneLot, Printed, OfReport)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(lot);
     page(app, move |archive| {
-        let on = paper::paper_of(archive, &filter, language(printed.lang))?;
+        let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         Ok(paper::lot_report(archive, &filter, own.ideal_cycle_s, &on)?)
     })
     .await
@@ -62,11 +62,12 @@ pub(crate) async fn lot(
 /// `GET /api/history/report/certificate`.
 pub(crate) async fn certificate(
     State(app): App,
+    preferred: Preferred,
     Asked((lot, printed, own)): Asked<(OneLot, Printed, OfCertificate)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(lot);
     page(app, move |archive| {
-        let on = paper::paper_of(archive, &filter, language(printed.lang))?;
+        let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         Ok(paper::part_certificate(archive, &filter, own.seq, &on)?)
     })
     .await
@@ -75,11 +76,12 @@ pub(crate) async fn certificate(
 /// `GET /api/history/report/alarms`.
 pub(crate) async fn alarms(
     State(app): App,
+    preferred: Preferred,
     Asked((asked, printed)): Asked<((Runs, TimeSpan, Paging), Printed)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(asked);
     page(app, move |archive| {
-        let on = paper::paper_of(archive, &filter, language(printed.lang))?;
+        let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         Ok(paper::alarm_list(archive, &filter, &on)?)
     })
     .await
@@ -88,13 +90,14 @@ pub(crate) async fn alarms(
 /// `GET /api/history/report/chart`.
 pub(crate) async fn chart(
     State(app): App,
+    preferred: Preferred,
     Asked((asked, how, printed)): Asked<((Runs, TimeSpan, OfParts), Charting, Printed)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(asked);
     checks::validate(&filter)?;
     let last = how.last()?;
     page(app, move |archive| {
-        let on = paper::paper_of(archive, &filter, language(printed.lang))?;
+        let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         let about = filter.lot.clone().unwrap_or_default();
         let charts = super::charted(archive, &filter, &how)?;
         Ok(charts::page(&on, &about, &charts, last))

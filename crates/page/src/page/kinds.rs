@@ -7,8 +7,11 @@ use texts::Lang;
 
 /// Families of texts that the answer to `GET /` omits: they reach the page inside alarms, reasons and refusals, or
 /// appear in print only.
-const ELSEWHERE: [&str; 29] = [
+const ELSEWHERE: [&str; 32] = [
     "alarm",
+    "batch",
+    "batch_choice",
+    "batch_list",
     "card",
     "cause",
     "characteristic",

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 /// Name, markup and code of each script.
-pub(super) const SOURCES: [[&str; 3]; 10] = {
+pub(super) const SOURCES: [[&str; 3]; 11] = {
     macro_rules! source {
         ($name:literal, $($code:literal),+) => {
             [
@@ -28,6 +28,7 @@ pub(super) const SOURCES: [[&str; 3]; 10] = {
         source!("recipes", "recipe_sheet", "recipes"),
         source!("rejudge", "rejudge"),
         source!("service", "service"),
+        source!("tooling", "tooling"),
         source!("trace", "trace"),
     ]
 };

@@ -106,8 +106,13 @@ fn every_text_of_the_pages_is_used() {
         "counter",
         "role",
         "factor",
+        "failure",
         "body",
         "people",
+        "tooling",
+        "tooling_end",
+        "tooling_kind",
+        "tooling_side",
     ];
     for key in table().keys() {
         let family = key.split('-').next().unwrap();

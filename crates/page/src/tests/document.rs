@@ -7,13 +7,20 @@ use ::history::{
 };
 use serde_json::{Map, Value, json};
 
-/// Routes that the test of success leaves out: a stream without end, what ends sessions or changes people, which
-/// `people.rs` and `login.rs` call, and what a second engineer must do, which `approval.rs` calls.
-const APART: [&str; 6] = [
+/// Routes that the test of successful answers leaves out: a stream without end; routes that end sessions or change
+/// people, which `people.rs` and `login.rs` call; those that need a second engineer, which `approval.rs` calls; and
+/// those that need a plan under way, which `plans.rs` calls.
+const APART: [&str; 12] = [
     "/api/events",
     "/api/logout",
     "/api/password",
     "/api/people/change",
+    "/api/plans/abandon",
+    "/api/plans/paper",
+    "/api/plans/show",
+    "/api/plans/start",
+    "/api/plans/tick",
+    "/api/plans/untick",
     "/api/recipes/approve",
     "/api/setup",
 ];

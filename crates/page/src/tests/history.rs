@@ -166,10 +166,15 @@ async fn every_report_prints_in_both_languages_without_scripts() {
         ("report/alarms?lot=A", "Alarm list", "报警清单"),
     ] {
         let and = if route.contains('?') { '&' } else { '?' };
-        let chinese = fixture.get(&format!("/api/history/{route}")).await;
-        let english = format!("/api/history/{route}{and}lang=en");
-        let english = fixture.get(&english).await;
-        for (answer, word) in [(&chinese, zh), (&english, en)] {
+        let usual = format!("/api/history/{route}");
+        let named = |lang| format!("/api/history/{route}{and}lang={lang}");
+        let chinese = "zh-CN,zh;q=0.9,en;q=0.8";
+        for (answer, word) in [
+            (fixture.get(&usual).await, en),
+            (fixture.get_in(chinese, &usual).await, zh),
+            (fixture.get_in(chinese, &named("en")).await, en),
+            (fixture.get(&named("zh")).await, zh),
+        ] {
             assert_eq!(answer.status, 200, "{route}");
             assert_eq!(answer.headers["content-type"], "text/html; charset=utf-8");
             assert!(answer.text().contains(word), "{route}: {word}");

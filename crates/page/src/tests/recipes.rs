@@ -340,6 +340,8 @@ async fn the_process_card_of_a_recipe_prints() {
             .await;
         assert_eq!(answer.status, 200, "{}", answer.text());
         assert!(answer.text().contains(word) && !answer.text().contains("<script"));
+        let named = fixture.get_in(lang, "/api/recipes/card?name=jzc-22f-012");
+        assert!(named.await.text().contains(word));
     }
     fixture
         .get("/api/recipes/card?name=..%2Frig")

@@ -59,7 +59,7 @@ async fn a_browser_keeps_a_script_under_its_versioned_name() {
         .nth(1);
     let paths = paths.unwrap().split("</script>").next().unwrap();
     let paths: std::collections::BTreeMap<String, String> = serde_json::from_str(paths).unwrap();
-    assert_eq!(paths.len(), 12);
+    assert_eq!(paths.len(), 13);
     for path in paths.values() {
         let (answer, text) = unpacked(&fixture, path, "gzip").await;
         assert!(text.starts_with(&format!("addPages(\"{path}\"")), "{path}");

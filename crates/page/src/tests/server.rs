@@ -24,6 +24,7 @@ impl Fixture {
             sessions: self.sessions.clone(),
             view: self.view.subscribe(),
             traffic: some_traffic(),
+            plans: Arc::new(plans::OneStep),
             db: self.db.clone(),
             config: Folder::built_in(),
             orders: self.orders.clone(),

@@ -4,7 +4,7 @@ use crate::figure::{Bar, shown};
 
 /// Significant digits of a value.
 const DIGITS: usize = 3;
-/// Significant digits of a bar, and the most of a value.
+/// Significant digits with which a bar is printed; a value is printed with no more.
 const MOST: usize = 6;
 /// Decimal exponent below which a number appears in scientific notation.
 const SMALL: i32 = -5;

@@ -70,11 +70,11 @@ fn command(order: &Order, run: &Run, folder: &Path) -> anyhow::Result<Command> {
     };
     let mut command = Command::new(program);
     if program == order.program {
-        command
-            .arg("--config")
-            .arg(&order.config)
-            .arg("--db")
-            .arg(folder.join("history.db"));
+        // A run of another rig names its configuration itself.
+        if !run.command.contains(" --config ") {
+            command.arg("--config").arg(&order.config);
+        }
+        command.arg("--db").arg(folder.join("history.db"));
         command.args(["--log", "error"]);
     }
     for word in words {

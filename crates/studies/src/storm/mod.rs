@@ -10,10 +10,10 @@
 //! that reproduces it: the same seed gives the same trace, bit for bit.
 
 mod judge;
-mod life;
+pub(crate) mod life;
 mod operator;
 mod report;
-mod scenario;
+pub(crate) mod scenario;
 mod trace;
 
 use super::order::Order;

@@ -39,7 +39,7 @@ fn the_bar_applies_to_the_longest_test() {
         truth(1, None, "pass", 8.0),
         truth(2, Some("weak_spring"), "voltage", 8.0),
     ];
-    let found = times(&[lot(&[row(1, "pass", "pass", 8.0), long], &truths)]);
+    let found = times(&[lot(&[row(1, "pass", "pass", 8.0), long], &truths)], 0.85);
     assert_eq!(
         figure(&found, "test, longest of good parts").met(),
         Some(true)
@@ -71,7 +71,7 @@ fn the_first_parts_of_a_lot_count_apart() {
     };
     let rows: Vec<Value> = (1..=8).map(with_test).collect();
     let truths: Vec<Value> = (1..=8).map(|seq| truth(seq, None, "pass", 8.0)).collect();
-    let found = times(&[lot(&rows, &truths)]);
+    let found = times(&[lot(&rows, &truths)], 0.85);
     let first = figure(&found, "  of the first 6 of a lot, which teach");
     assert_eq!((first.n, first.met()), (6, Some(false)));
     let after = figure(&found, "  of those after them");

@@ -114,7 +114,7 @@ fn chinese_texts_have_full_width_punctuation() {
 
 /// Latin words that a Chinese text may have: units, symbols of statistics and metrology, names, keys, codes, columns of
 /// files.
-const LATIN: [&str; 48] = [
+const LATIN: [&str; 49] = [
     "A",
     "B",
     "V",
@@ -163,6 +163,7 @@ const LATIN: [&str; 48] = [
     "GPIB",
     "SCPI",
     "MOSFET",
+    "PID",
 ];
 
 #[test]

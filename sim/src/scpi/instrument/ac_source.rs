@@ -1,5 +1,5 @@
-//! AC source of the 61500 class. It drives a sine without a current limit; it refuses other shapes, couplings and
-//! modes.
+//! AC source of the 61500 class. It switches its output off when the rms current stays above the limit for longer than
+//! the delay; it refuses other shapes, couplings and modes.
 
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting};
@@ -14,6 +14,11 @@ const RESET_US: u64 = 7_000_000;
 /// Length of a measurement in cycles; the next constant is its number of samples.
 const CYCLES: f64 = 5.0;
 const SAMPLES: u32 = 500;
+/// Interval at which the source checks its current, microseconds; the next number is how many intervals make one rms.
+const WATCH_US: u64 = 1_250;
+const WATCHED: usize = 16;
+/// Bit of the questionable status that is set when the limit has switched the output off.
+const OVERCURRENT: u8 = 2;
 /// Highest voltage of the lower range, volts rms.
 const LOW_V: f64 = 150.0;
 
@@ -50,6 +55,14 @@ pub(super) struct AcSource {
     last: Option<Window>,
     /// Instant at which the output switches off after a command: the programmed phase.
     off_us: Option<u64>,
+    /// Instant of the next check of the current while the output is on; the next field holds the squares of the last
+    /// currents.
+    watch_us: Option<u64>,
+    squares: [f64; WATCHED],
+    looks: usize,
+    /// Instant since which the current exceeds its limit.
+    over_us: Option<u64>,
+    tripped: bool,
 }
 
 impl AcSource {
@@ -59,7 +72,35 @@ impl AcSource {
             job: None,
             last: None,
             off_us: None,
+            watch_us: None,
+            squares: [0.0; WATCHED],
+            looks: 0,
+            over_us: None,
+            tripped: false,
         }
+    }
+
+    /// Starts to watch the current when the output goes on; stops when it goes off.
+    fn watch_output(&mut self, now_us: u64) {
+        let is_on = self.body.settings.on("output") || self.off_us.is_some();
+        self.watch_us = is_on.then_some(self.watch_us.unwrap_or(now_us + WATCH_US));
+        if !is_on {
+            (self.squares, self.over_us) = ([0.0; WATCHED], None);
+        }
+    }
+
+    /// Checks whether the rms current has exceeded its limit for longer than the delay.
+    fn is_over(&mut self, amps: f64, now_us: u64) -> bool {
+        self.squares[self.looks % WATCHED] = amps * amps;
+        self.looks += 1;
+        let mean: f64 = self.squares.iter().sum::<f64>() / WATCHED as f64;
+        if mean.sqrt() <= self.body.settings.number("limit_a") {
+            self.over_us = None;
+            return false;
+        }
+        let since_us = *self.over_us.get_or_insert(now_us);
+        let delay_us = self.body.settings.number("limit_delay_s") * 1e6;
+        (now_us - since_us) as f64 >= delay_us
     }
 
     /// Connects the output; with `starts` the sine begins at the programmed phase, otherwise it continues.
@@ -117,6 +158,8 @@ impl Instrument for AcSource {
     fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
         self.body.settings.reset();
         (self.job, self.last, self.off_us) = (None, None, None);
+        self.tripped = false;
+        self.watch_output(at.now_us);
         self.drive(at.circuit, false);
         RESET_US
     }
@@ -131,13 +174,31 @@ impl Instrument for AcSource {
                 self.off_us = Some(self.off_at(at.now_us, at.circuit));
             }
             ("output", was_on) => {
-                self.off_us = None;
+                (self.off_us, self.tripped) = (None, false);
                 self.drive(at.circuit, !was_on);
             }
             ("volts" | "hz", _) if self.off_us.is_none() => self.drive(at.circuit, false),
             _ => {}
         }
+        self.watch_output(at.now_us);
         Ok(0)
+    }
+
+    fn watch_us(&self) -> Option<u64> {
+        self.watch_us
+    }
+
+    fn watch(&mut self, at: &mut Moment<'_>) -> Option<Failure> {
+        self.watch_us = Some(at.now_us + WATCH_US);
+        let amps = at.circuit.at(self.body.at).amps;
+        if !self.is_over(amps, at.now_us) {
+            return None;
+        }
+        self.body.settings.set("output", 0.0);
+        (self.off_us, self.tripped) = (None, true);
+        self.drive(at.circuit, false);
+        self.watch_output(at.now_us);
+        Some(Failure::OVERCURRENT)
     }
 
     fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
@@ -151,7 +212,8 @@ impl Instrument for AcSource {
             }
             true if measured(unit, ":FETCh").is_some() => self.fetch(unit),
             true if has(":STATus:QUEStionable:CONDition") => {
-                Ok(Outcome::Text("0".into(), command_us))
+                let bits = if self.tripped { OVERCURRENT } else { 0 };
+                Ok(Outcome::Text(bits.to_string(), command_us))
             }
             false if has(":ABORt") => {
                 self.job = None;
@@ -193,6 +255,7 @@ impl Instrument for AcSource {
         if self.off_us.is_some_and(|off_us| off_us <= at.now_us) {
             self.off_us = None;
             self.drive(at.circuit, false);
+            self.watch_output(at.now_us);
             return;
         }
         if let Some(window) = &mut self.job

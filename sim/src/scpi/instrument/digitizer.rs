@@ -121,7 +121,7 @@ impl Digitizer {
         ];
         let spare = spare.map(|at| Channel { at, ratio: 1.0 });
         let channels = std::array::from_fn(|n| *channels.get(n).unwrap_or(&spare[n]));
-        let front_end = FrontEnd::new(&body.settings, &channels, dialect);
+        let front_end = FrontEnd::new(&body.settings, &channels, dialect, &body.errors);
         Self {
             body,
             channels,
@@ -304,7 +304,12 @@ impl Instrument for Digitizer {
 
     fn reset(&mut self, _: &mut Moment<'_>) -> u64 {
         self.body.settings.reset();
-        self.front_end = FrontEnd::new(&self.body.settings, &self.channels, self.dialect);
+        self.front_end = FrontEnd::new(
+            &self.body.settings,
+            &self.channels,
+            self.dialect,
+            &self.body.errors,
+        );
         self.capture = None;
         self.memory.clear();
         400_000
@@ -312,7 +317,12 @@ impl Instrument for Digitizer {
 
     fn changed(&mut self, changed: Changed, _: &mut Moment<'_>) -> Result<u64, Failure> {
         self.follow(changed);
-        self.front_end = FrontEnd::new(&self.body.settings, &self.channels, self.dialect);
+        self.front_end = FrontEnd::new(
+            &self.body.settings,
+            &self.channels,
+            self.dialect,
+            &self.body.errors,
+        );
         Ok(0)
     }
 
@@ -386,6 +396,16 @@ impl Instrument for Digitizer {
             self.recorded = self.front_end;
             self.memory = capture.samples.into();
             self.memory.truncate(capture.points);
+        }
+    }
+
+    /// Takes samples in a row, because an event for each would cost more than the sample.
+    fn run(&mut self, at: &mut Moment<'_>, end_us: u64) {
+        self.tick(at);
+        while let Some(next_us) = self.next_us().filter(|next_us| *next_us < end_us) {
+            at.now_us = next_us.max(at.now_us);
+            at.circuit.advance(at.now_us);
+            self.tick(at);
         }
     }
 }

@@ -4,6 +4,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
+use crate::module::tolerances::stream;
+
 /// Limits of error of one function at one range.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accuracy {
@@ -20,6 +22,8 @@ pub(super) struct Errors {
     rng: ChaCha8Rng,
     gain: [f64; 4],
     offset: [f64; 4],
+    /// Seed of the errors that belong to a range.
+    ranges: u64,
     exact: bool,
 }
 
@@ -28,12 +32,33 @@ impl Errors {
     pub(super) fn draw(mut rng: ChaCha8Rng, exact: bool) -> Self {
         let mut fractions = || std::array::from_fn(|_| 2.0 * rng.random::<f64>() - 1.0);
         let (gain, offset) = (fractions(), fractions());
+        let ranges = rng.random();
         Self {
             rng,
             gain,
             offset,
+            ranges,
             exact,
         }
+    }
+
+    /// Draws a number from 0 to 1; 0 for an exact instrument.
+    pub(super) fn fraction(&mut self) -> f64 {
+        if self.exact { 0.0 } else { self.rng.random() }
+    }
+
+    /// Returns the gain error of a function (0 to 3), common to its ranges, as a fraction of its limit.
+    pub(super) fn of_gain(&self, function: usize) -> f64 {
+        if self.exact { 0.0 } else { self.gain[function] }
+    }
+
+    /// Returns the errors that a function (0 to 3) has in one of its ranges alone, as fractions of their limits.
+    pub(super) fn of_range(&self, function: usize, range: i32) -> [f64; 3] {
+        if self.exact {
+            return [0.0; 3];
+        }
+        let mut rng = stream(self.ranges, &format!("{function} {range}"));
+        std::array::from_fn(|_| 2.0 * rng.random::<f64>() - 1.0)
     }
 
     /// Draws from the standard normal distribution; 0 for an exact instrument.

@@ -77,8 +77,24 @@ pub trait Instrument: Send {
         self.next_us()
     }
 
+    /// Returns the next instant at which the instrument checks its own output; `None` while it does not.
+    fn watch_us(&self) -> Option<u64> {
+        None
+    }
+
+    /// Checks the output; returns an entry for the error queue when it has switched the output off.
+    fn watch(&mut self, _: &mut Moment<'_>) -> Option<Failure> {
+        None
+    }
+
     /// Runs the step of the job that is due.
     fn tick(&mut self, at: &mut Moment<'_>);
+
+    /// Runs the step of the job that is due. An instrument may go on with the steps before `end_us`: until then nothing
+    /// but the circuit acts. Leaves circuit and instant at the last step.
+    fn run(&mut self, at: &mut Moment<'_>, _end_us: u64) {
+        self.tick(at);
+    }
 
     /// Executes a command or query that is no common one.
     ///
@@ -171,7 +187,7 @@ struct Kit {
     settings: &'static [Setting],
 }
 
-/// Builds an instrument; `seed` and name draw its errors.
+/// Builds an instrument whose errors are drawn from `seed` and its name.
 pub fn build(model: Model, name: &str, seed: u64, fitting: Fitting) -> Box<dyn Instrument> {
     let kit = match model {
         Model::Smu => smu::KIT,

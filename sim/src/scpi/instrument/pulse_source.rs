@@ -87,6 +87,8 @@ impl PulseSource {
             high_v,
             period_us,
             width_us: width_us.min(period_us),
+            // The clock of the generator is its own: its edges lie anywhere between two microseconds of the rig.
+            delay_us: errors.fraction(),
             count,
             source_ohm: SOURCE_OHM,
         }
@@ -113,7 +115,8 @@ impl PulseSource {
     fn burst(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
         let cycles = self.body.settings.number("cycles").round();
         let pulses = self.pulses(Some(cycles as u64));
-        self.burst_end_us = Some(now_us + (pulses.period_us * cycles).ceil() as u64);
+        self.burst_end_us =
+            Some(now_us + (pulses.delay_us + pulses.period_us * cycles).ceil() as u64);
         circuit.drive(self.body.at, Drive::Pulses(pulses));
     }
 

@@ -5,7 +5,7 @@ use super::light::Light;
 use super::truth::{Kind, REFERENCE_C, Truth};
 use crate::scpi::circuit::{Circuit, Drive, Reading, Terminal, over_resistor};
 use crate::scpi::line::Line;
-use crate::scpi::passive::CLAMP_V;
+use crate::scpi::passive::clamped;
 use crate::scpi::sources::Sources;
 
 /// Longest time step while the line is on, microseconds; the next constant applies while it is off.
@@ -265,7 +265,7 @@ impl Circuit for SolidState {
             Terminal::Clamped => {
                 let output = self.at(Terminal::Output);
                 Reading {
-                    volts: output.volts.clamp(-CLAMP_V, CLAMP_V),
+                    volts: clamped(output.volts),
                     ..output
                 }
             }
@@ -273,7 +273,7 @@ impl Circuit for SolidState {
                 volts: line_v,
                 amps,
             },
-            Terminal::Load => {
+            Terminal::Load | Terminal::Shunt => {
                 let amps = self.through(self.at(Terminal::Output));
                 Reading {
                     volts: amps * self.load_ohm,

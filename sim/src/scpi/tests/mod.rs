@@ -332,7 +332,7 @@ fn a_served_circuit_advances_without_a_host() {
         .unwrap();
     runtime.block_on(async {
         let shared = bench(SMU);
-        super::serve::real_time(&shared).await.unwrap();
+        let _served = super::serve::real_time(&shared).await.unwrap();
         tokio::task::yield_now().await;
         tokio::time::advance(std::time::Duration::from_secs(10)).await;
         tokio::task::yield_now().await;

@@ -2,13 +2,13 @@
 
 use super::*;
 use crate::scpi::circuit::{Circuit, Drive, Terminal};
-use crate::scpi::line::Line;
+use crate::scpi::line::{Line, Unrest};
 use crate::scpi::relay::SolidState;
 
 /// Puts a zero-cross relay on 230 V, 50 Hz.
 fn on_the_line(defect: Option<Defect>, load_h: f64) -> SolidState {
     let truth = Truth::draw(Kind::AcZeroCross, defect, 1);
-    let mut relay = SolidState::new(truth, Line::new(1, false), 2_300.0, load_h);
+    let mut relay = SolidState::new(truth, Line::new(1, Unrest::NONE), 2_300.0, load_h);
     let sine = Drive::Sine {
         rms_v: 230.0,
         hz: 50.0,
@@ -77,7 +77,7 @@ fn a_weak_triac_stays_on_over_an_inductive_load() {
 #[test]
 fn no_current_needs_no_voltage() {
     let truth = Truth::draw(Kind::Dc, None, 1);
-    let mut relay = SolidState::new(truth, Line::new(1, false), 2_300.0, 0.0);
+    let mut relay = SolidState::new(truth, Line::new(1, Unrest::NONE), 2_300.0, 0.0);
     let mut volts = |terminal, amps| {
         let limit_v = 20.0;
         relay.drive(terminal, Drive::Current { amps, limit_v });

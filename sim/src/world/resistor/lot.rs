@@ -26,7 +26,8 @@ impl Lot {
     pub fn new(world: &WorldTable, files: &Files) -> Result<Self, ConfigError> {
         Ok(Self {
             table: present(&world.resistor, "resistor", files)?,
-            part_minus_track_sd_k: world.environment.part_minus_track_sd_k,
+            part_minus_track_sd_k: present(&world.environment, "environment", files)?
+                .part_minus_track_sd_k,
         })
     }
 

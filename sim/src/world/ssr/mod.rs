@@ -1,8 +1,10 @@
-//! A solid-state relay with a DC output in the nest: light on its driver, heat of its junction.
+//! A solid-state relay in the nest: light of the LED on its driver, heat of the junction, firing of an AC output.
 //!
-//! The board solves the circuit and tells the part its input current and its power; between two events both count as
-//! constant. The electrical model is that of the instruments' bench (`scpi/relay`).
+//! The board solves the circuit and gives the part its input current and its power, both constant between two events.
+//! The electrical model is that of the instruments' bench (`scpi/relay`).
 
+mod ac;
+mod ac_values;
 mod defect;
 mod lot;
 pub mod table;
@@ -24,6 +26,8 @@ pub use values::{Rated, Values};
 pub struct Ssr {
     values: Values,
     defect: Option<Defect>,
+    /// Resistance of the loop for which figures at the rated alternating current are defined, ohms.
+    loop_ohm: f64,
     light: Light,
     heat: Heat,
     at: AtTemperature,
@@ -40,6 +44,9 @@ struct AtTemperature {
     threshold_a: f64,
     on_siemens: f64,
     blocked_siemens: f64,
+    /// Threshold voltage of the conducting AC output in positive and in negative direction, volts.
+    knee_v: [f64; 2],
+    slope_ohm: f64,
 }
 
 impl AtTemperature {
@@ -49,17 +56,20 @@ impl AtTemperature {
             threshold_a: values.model.threshold_at(celsius),
             on_siemens: 1.0 / values.on_ohm(celsius),
             blocked_siemens: values.blocked_siemens(celsius),
+            knee_v: values.knee_v(celsius),
+            slope_ohm: values.model.slope_ohm(celsius),
         }
     }
 }
 
 impl Ssr {
     /// Creates a cold, dark part at an instant, microseconds.
-    pub fn new(values: Values, defect: Option<Defect>, now_us: f64) -> Self {
+    pub fn new(values: Values, defect: Option<Defect>, loop_ohm: f64, now_us: f64) -> Self {
         Self {
             at: AtTemperature::new(&values, values.celsius),
             values,
             defect,
+            loop_ohm,
             light: Light::default(),
             heat: Heat::default(),
             now_us,
@@ -92,14 +102,9 @@ impl Ssr {
         self.light.is_lit()
     }
 
-    /// Switches the output at the end of the time that [`Ssr::switch_us`] has given.
-    pub fn switch(&mut self, on: bool) {
-        self.light.switch(on, &self.values.model);
-    }
-
-    /// Returns the present conductance of the output, siemens.
+    /// Returns the present conductance of the blocked or DC output, siemens; a conducting AC output has none.
     pub fn siemens(&self) -> f64 {
-        match self.values.model.shorted || self.light.is_lit() {
+        match self.values.model.shorted || self.light.is_lit() && !self.is_ac() {
             true => self.at.on_siemens,
             false => self.at.blocked_siemens,
         }
@@ -113,7 +118,7 @@ impl Ssr {
     /// Advances by `dt_us` at a constant light goal and power, watts.
     pub fn pass(&mut self, dt_us: f64, goal: f64, watts: f64) {
         let dt_s = dt_us * 1e-6;
-        self.light.advance(goal, &self.values.model, dt_s);
+        self.shine(goal, dt_s);
         let k_per_w = self.values.model.junction_k_per_w;
         self.heat.advance(watts, k_per_w, dt_s);
         let celsius = self.values.celsius + self.heat.kelvin();
@@ -123,9 +128,23 @@ impl Ssr {
         self.now_us += dt_us;
     }
 
+    /// Moves the light towards its goal, and switches the output when the light passes a threshold.
+    fn shine(&mut self, goal: f64, dt_s: f64) {
+        let (model, was_lit) = (&self.values.model, self.is_lit());
+        let switch_s = self.light.switch_s(goal, model);
+        let Some(first_s) = switch_s.filter(|it| *it <= dt_s) else {
+            return self.light.advance(goal, model, dt_s);
+        };
+        self.light.advance(goal, model, first_s);
+        self.light.switch(!was_lit, model);
+        if dt_s > first_s {
+            self.light.advance(goal, model, dt_s - first_s);
+        }
+    }
+
     /// Returns the true figures.
     pub fn figures(&self) -> SsrTruth {
-        SsrTruth::new(&self.values, self.defect)
+        SsrTruth::new(&self.values, self.defect, self.loop_ohm)
     }
 }
 

@@ -21,6 +21,8 @@ pub struct Rated {
     pub blocked_v: f64,
     /// Current of the conducting output, amperes.
     pub load_a: f64,
+    /// Frequency of the line, hertz; 0 for a DC output.
+    pub hz: f64,
 }
 
 /// True values of a part.
@@ -36,6 +38,8 @@ pub struct Values {
     pub shorted_ohm: f64,
     /// Time in which the load resistor of the rig recharges the output to 90 % after it has turned off, seconds.
     pub recharge_s: f64,
+    /// Direction in which a damaged AC output conducts without light: 1 or -1; 0 for none.
+    pub half_short: f64,
     /// Pins that touch their probes: in+, in-, out1, out2; the fifth pair has no probe.
     pub pins: Pins,
 }

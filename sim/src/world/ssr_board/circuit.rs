@@ -3,12 +3,15 @@
 use super::network::{Limited, Network};
 use super::{InputAt, Reference, SsrBoard};
 use crate::scpi::circuit::{Drive, Reading, Terminal, over_resistor};
-use crate::scpi::passive::CLAMP_V;
+use crate::scpi::passive::clamped;
 use crate::scpi::sources::PulseInput;
 use crate::world::probes::Pins;
 use crate::world::signal::Out;
 use crate::world::specimen::{ProbeInterface, Specimen};
 use crate::world::ssr::Ssr;
+
+/// Time after which the socket has settled with anything connected to it, seconds.
+const SETTLED_S: f64 = 1e6;
 
 impl SsrBoard {
     /// Connects a source of an instrument from the present instant on.
@@ -17,9 +20,10 @@ impl SsrBoard {
             Terminal::Input => self.smu_in = drive,
             Terminal::Output => self.smu_out = drive,
             Terminal::Pulse => self.pulse = PulseInput::new(drive, self.now_us),
-            // No source of a line is connected to this board.
-            Terminal::Line | Terminal::Load | Terminal::Socket | Terminal::Clamped => {}
+            Terminal::Line => self.line.drive(drive, self.now_us),
+            Terminal::Load | Terminal::Shunt | Terminal::Socket | Terminal::Clamped => {}
         }
+        self.touch();
     }
 
     /// Returns what an instrument or probe finds at its terminals; at the pulse source that is the control input.
@@ -34,14 +38,30 @@ impl SsrBoard {
             }
             Terminal::Input => self.input(part).1,
             Terminal::Output => self.at_smu_out(part),
-            Terminal::Socket => probe(self.socket_v),
-            Terminal::Clamped => probe(self.socket_v.clamp(-CLAMP_V, CLAMP_V)),
+            Terminal::Socket => probe(self.residual_v()),
+            Terminal::Clamped => probe(clamped(self.residual_v())),
             Terminal::Load => Reading {
-                volts: self.socket_v,
+                volts: self.residual_v(),
                 amps: self.load_a(part),
             },
-            Terminal::Line => Reading::default(),
+            Terminal::Shunt => probe(self.load_a(part) * self.shunt_ohm()),
+            Terminal::Line => Reading {
+                volts: self.line.cycle().volts(self.now_us),
+                amps: self.line_a(),
+            },
         }
+    }
+
+    /// Returns the present phase of the line, 0 to 360 degrees.
+    pub fn line_deg(&self) -> f64 {
+        let rad = self.line.cycle().phase_rad(self.now_us);
+        rad.to_degrees().rem_euclid(360.0)
+    }
+
+    /// Returns the current that the AC source delivers, amperes.
+    fn line_a(&self) -> f64 {
+        let circuit = self.alternating.as_ref();
+        circuit.map_or(0.0, |it| it.at(self.now_us).amps)
     }
 
     /// Returns voltage and current of the control input, with their conditions.
@@ -77,7 +97,7 @@ impl SsrBoard {
         }
     }
 
-    /// Returns the light of the present input current, over the threshold.
+    /// Returns the light to which the present input current leads, relative to the threshold.
     pub(super) fn goal(&self, part: &Ssr) -> f64 {
         part.goal(self.input(Some(part)).1.amps)
     }
@@ -106,6 +126,9 @@ impl SsrBoard {
         if self.connects(Out::ShortCheck) {
             network.source(self.sign() * table.short_check_v, table.short_check_ohm);
         }
+        if self.is_shorted() {
+            network.resistor(table.socket_short_mohm * 1e-3);
+        }
         match self.reference {
             Reference::Part => {
                 if let Some(part) = part.filter(|it| self.meets_output(it)) {
@@ -120,9 +143,25 @@ impl SsrBoard {
         network
     }
 
+    /// Returns the network across the socket while no contactor is closed. It includes an AC output that a direct
+    /// voltage has fired.
+    pub(super) fn with_output(&self, part: Option<&Ssr>) -> Network {
+        let mut network = self.network(part);
+        let Some(part) = part.filter(|it| it.is_ac() && self.meets_output(it)) else {
+            return network;
+        };
+        let free_v = network.after(self.socket_v, self.at_socket(), SETTLED_S);
+        let sign = free_v.signum();
+        let window = part.window(sign, false, false, 0.0);
+        if window.is_some_and(|(least_v, most_v)| (least_v..=most_v).contains(&free_v.abs())) {
+            network.source(sign * part.knee_v(sign), part.slope_ohm());
+        }
+        network
+    }
+
     /// Returns the source-measure unit as the socket sees it; `None` while it is not connected.
     pub(super) fn at_socket(&self) -> Option<Limited> {
-        if !self.connects(Out::SmuToOutput) {
+        if !self.connects(Out::SmuToOutput) || self.alternating.is_some() {
             return None;
         }
         let (volts, limit_a, own_ohm) = match self.smu_out {
@@ -151,13 +190,16 @@ impl SsrBoard {
 
     /// Returns the current of the unit into the socket, amperes, from out1 to out2 through the part.
     fn smu_a(&self, part: Option<&Ssr>) -> f64 {
-        let network = self.network(part);
+        let network = self.with_output(part);
         let source = self.at_socket();
         source.map_or(0.0, |it| network.current(self.socket_v, it))
     }
 
     /// Returns the current of all sources into the socket, amperes.
     fn load_a(&self, part: Option<&Ssr>) -> f64 {
+        if self.alternating.is_some() {
+            return self.line_a();
+        }
         self.smu_a(part) + self.sign() * self.short_check_a()
     }
 

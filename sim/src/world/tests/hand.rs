@@ -78,7 +78,7 @@ impl Hand {
     /// Sets the level so that the supply gives this voltage in the commanded range.
     pub(super) fn level(&mut self, supply_v: f64) {
         self.world
-            .analog_out("ao_level", supply_v / 1.5 / self.factor);
+            .analog_out("ao_level", 0, supply_v / 1.5 / self.factor);
     }
 
     pub(super) fn value(&mut self, point: &str) -> f64 {

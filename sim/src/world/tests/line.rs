@@ -116,10 +116,10 @@ fn a_ramp_opens_the_window_after_fifty_millivolts() {
     hand.set("ramp_mode", true);
     hand.set("select_no", true);
     hand.set("arm", true);
-    hand.world.analog_out("ao_fine", 0.049 / 1.5);
+    hand.world.analog_out("ao_fine", 0, 0.049 / 1.5);
     hand.wait(1.0);
     assert!(!hand.is_on("window"));
-    hand.world.analog_out("ao_fine", 0.051 / 1.5);
+    hand.world.analog_out("ao_fine", 0, 0.051 / 1.5);
     assert!(hand.is_on("window"));
 }
 

@@ -55,7 +55,7 @@ fn the_relays_report_the_range_after_five_milliseconds() {
 #[test]
 fn a_rig_starts_in_range_code_zero() {
     let mut world = World::build(&options(false)).unwrap();
-    world.analog_out("ao_level", 4.0);
+    world.analog_out("ao_level", 0, 4.0);
     near(world.analog_in("coil_ai", 4), 3.0 * 0.15, "supply");
 }
 
@@ -80,10 +80,10 @@ fn a_driven_coil_keeps_its_range() {
 fn each_source_above_zero_keeps_the_range() {
     let mut hand = Hand::new(options(false));
     for source in ["ao_level", "ao_coarse", "ao_fine"] {
-        hand.world.analog_out(source, 0.021);
+        hand.world.analog_out(source, 0, 0.021);
         hand.range(3);
         assert_eq!(hand.range_set(), 1, "{source}");
-        hand.world.analog_out(source, 0.019);
+        hand.world.analog_out(source, 0, 0.019);
         hand.wait(6.0);
         assert_eq!(hand.range_set(), 3, "{source}");
         hand.range(1);
@@ -108,7 +108,7 @@ fn a_source_that_moves_starts_the_change_anew() {
 fn supply_and_coil_voltage_scale_with_the_range() {
     for (code, factor, ..) in RANGES {
         let mut hand = resistor(6400.0, code);
-        hand.world.analog_out("ao_level", 4.0);
+        hand.world.analog_out("ao_level", 0, 4.0);
         hand.set("coil_drive", true);
         hand.wait(1.0);
         let terminal = |hand: &mut Hand, channel| hand.world.analog_in("coil_ai", channel);
@@ -125,7 +125,7 @@ fn each_range_limits_its_voltage_and_current() {
     for (code, _, max_v, max_ma) in RANGES {
         let mut hand = resistor(2.0, code);
         for source in ["ao_level", "ao_coarse"] {
-            hand.world.analog_out(source, 9.0);
+            hand.world.analog_out(source, 0, 9.0);
         }
         hand.set("coil_drive", true);
         hand.wait(1.0);
@@ -142,10 +142,10 @@ fn the_movement_that_starts_a_ramp_scales() {
         for point in ["ramp_mode", "select_no", "arm"] {
             hand.set(point, true);
         }
-        hand.world.analog_out("ao_fine", 0.049 / 1.5);
+        hand.world.analog_out("ao_fine", 0, 0.049 / 1.5);
         hand.wait(1.0);
         assert!(!hand.is_on("window"));
-        hand.world.analog_out("ao_fine", 0.051 / 1.5);
+        hand.world.analog_out("ao_fine", 0, 0.051 / 1.5);
         assert!(hand.is_on("window"));
     }
 }
@@ -217,7 +217,7 @@ fn a_rig_without_ranges_has_limits_of_its_world() {
     hand.wait(1.0);
     near(hand.value("coil_voltage"), 4.0, "coil");
     for source in ["ao_level", "ao_coarse", "ao_fine"] {
-        hand.world.analog_out(source, 10.0);
+        hand.world.analog_out(source, 0, 10.0);
     }
     near(hand.value("supply_voltage"), 20.0, "supply");
 }

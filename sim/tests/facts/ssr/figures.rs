@@ -168,6 +168,21 @@ fn the_output_follows_the_true_thresholds() {
 }
 
 #[test]
+fn the_clock_goes_on_at_every_switching() {
+    // When rounding left a switching too little ahead, the clock lost it and the rig stood still for good.
+    let mut hand = good();
+    hand.load();
+    hand.control(5.0);
+    for step in 0..1_000_u32 {
+        let volts = 1.5 + 3e-3 * f64::from(step);
+        for volts in [volts, 0.0] {
+            hand.tell("smu_in", &format!(":SOUR:VOLT {volts}"));
+            hand.wait(20.0);
+        }
+    }
+}
+
+#[test]
 fn without_a_part_every_terminal_is_open() {
     let mut hand = Hand::in_world(3, GOOD);
     hand.set("probe_lift", true);

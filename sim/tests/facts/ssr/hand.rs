@@ -9,6 +9,10 @@ use rigsim::{Files, Options, SharedRig};
 
 pub const RECIPE: &str = "ssr-dc-60v-3a";
 
+/// The instrument behind the adapter; the next text selects it there.
+pub const AC: &str = "ac_source";
+const ADAPTER: &str = "++mode 1\n++auto 0\n++eos 2\n++read_tmo_ms 3000\n++addr 9\n";
+
 /// Client of one rig; time in microseconds.
 pub struct Hand {
     pub rig: SharedRig,
@@ -170,23 +174,35 @@ impl Hand {
         self.pulse("axis_drive", 900.0);
     }
 
+    /// Returns the port of an instrument; the AC source is the one behind the adapter.
     fn port(&self, instrument: &str) -> usize {
-        let port = self.ports.iter().position(|name| name == instrument);
+        let port = self
+            .ports
+            .iter()
+            .position(|name| name == instrument || instrument == AC && name.contains(':'));
         port.expect("an instrument")
     }
 
     /// Sends a line to an instrument and gives it the time of a command.
     pub fn tell(&mut self, instrument: &str, line: &str) {
-        let bytes = format!("{line}\n").into_bytes();
-        self.rig.receive(self.port(instrument), &bytes, self.t_us);
+        let before = if instrument == AC { ADAPTER } else { "" };
+        let bytes = format!("{before}{line}\n").into_bytes();
+        let port = self.port(instrument);
+        self.rig.receive(port, &bytes, self.t_us);
         self.wait(30.0);
+        // The adapter works while its host listens.
+        assert_eq!(self.rig.due(port, self.t_us), Vec::new(), "{line}");
+        self.wait(5.0);
     }
 
     /// Sends a query and returns the bytes of its reply.
     pub fn ask_bytes(&mut self, instrument: &str, line: &str) -> Vec<u8> {
         let port = self.port(instrument);
-        self.rig
-            .receive(port, format!("{line}\n").as_bytes(), self.t_us);
+        let text = match instrument == AC {
+            true => format!("{ADAPTER}{line}\n++read eoi\n"),
+            false => format!("{line}\n"),
+        };
+        self.rig.receive(port, text.as_bytes(), self.t_us);
         for _ in 0..10_000 {
             self.t_us += 500;
             for out in self.rig.due(port, self.t_us) {

@@ -20,16 +20,21 @@ fn nothing_connects_without_the_probe_chain() {
     hand.set("smu_to_output", true);
     hand.set("short_check", true);
     hand.set("line_contactor", true);
+    hand.wait(100.0);
     assert!(hand.is_on("output_safe") && hand.is_on("line_open"));
     assert!(hand.residual_v().abs() < 1.0);
     hand.set("short_check", false);
+    hand.set("line_contactor", false);
     hand.set("probe_lift", true);
     hand.wait(300.0);
     assert!(!hand.is_on("output_safe"), "{:?}", hand.residual_v());
-    assert!(!hand.is_on("line_open"));
     let volts = hand.residual_v();
     assert!((volts - 60.0).abs() < 1.5, "{volts}");
+    hand.set("line_contactor", true);
+    hand.wait(20.0);
+    assert!(!hand.is_on("line_open") && hand.is_on("loop_open"));
     hand.set("loop_contactor", true);
+    hand.wait(20.0);
     assert!(hand.is_on("line_open") && hand.is_on("loop_open"), "both");
 }
 
@@ -47,15 +52,15 @@ fn the_jaws_stay_closed_until_the_output_is_safe() {
 }
 
 #[test]
-fn the_bleed_discharges_the_socket_in_microseconds() {
+fn the_bleed_discharges_the_socket_in_a_half_cycle() {
     let mut hand = Hand::new(1);
     at_60_v(&mut hand);
     hand.set("smu_to_output", false);
     hand.wait(5.0);
     assert!(!hand.is_on("output_safe"), "nothing discharges it yet");
     hand.set("bleed_open", false);
-    assert!(hand.is_on("output_safe"));
     assert!(hand.residual_v().abs() < 1.0);
+    assert!(hand.is_on("output_safe"));
 }
 
 #[test]
@@ -68,6 +73,7 @@ fn a_silent_host_leaves_the_output_safe() {
     hand.wait(990.0);
     assert!(!hand.is_on("output_safe"), "the source still drives");
     hand.t_us = last_us + 1_001_000;
+    hand.wait(12.0);
     assert!(hand.is_on("output_safe"));
     let volts = hand.residual_v();
     assert!(volts.abs() < 1.0, "{volts}");

@@ -27,7 +27,16 @@ fn plugs_and_lines_share_one_clock() {
         let lines = wire::plugs(&rig);
         let plugs = rig.instrument_plugs();
         let names: Vec<&str> = plugs.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["digitizer", "pulse_source", "smu_in", "smu_out"]);
+        assert_eq!(
+            names,
+            [
+                "digitizer",
+                "pulse_source",
+                "smu_in",
+                "smu_out",
+                "192.168.10.14:1234",
+            ]
+        );
         let mut smu = plugs[2].1.open().expect("a stream");
         let mut measure = lines[0].1.open().expect("a stream");
         smu.write_all(b"*IDN?\n").await.expect("a stream");
@@ -54,7 +63,8 @@ fn a_served_instrument_answers_over_tcp() {
         .enable_all()
         .build();
     runtime.expect("a runtime").block_on(async {
-        let links = rig(&[]).serve_instruments().await.expect("links");
+        let served = rig(&[]).serve_instruments().await.expect("links");
+        let links = &served.links;
         let named = |wanted: &str| {
             let link = links.iter().find(|(name, _)| name == wanted);
             link.map(|(_, link)| link.clone()).expect("a link")

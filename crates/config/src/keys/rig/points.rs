@@ -1,6 +1,6 @@
 //! Keys of points, actuators, the axis and the bins.
 
-use machine::form::{Form, Key, above_zero, from_to, key, whole};
+use machine::form::{Form, Key, above_zero, from_to, key, optional, whole};
 
 pub(super) const ANALOG_IN: &[Key] = keys! {
     key("module", Form::Text, "rig", "name of the module");
@@ -35,6 +35,8 @@ pub(super) const DIGITAL_IN: &[Key] = keys! {
 
 pub(super) const ACTUATOR: &[Key] = keys! {
     key("timeout_ms", above_zero(60_000.0, "ms"), "station", "longest stroke; a longer one raises an alarm");
+    optional("to_rest_needs", Form::Text, "guard", "input that must be on for a stroke to rest; not for the axis");
+    optional("to_end_needs", Form::Text, "guard", "input that must be on for a stroke away from rest; not for the axis");
 };
 
 pub(super) const STATION: &[Key] = keys! {
@@ -46,4 +48,23 @@ pub(super) const BIN: &[Key] = keys! {
     key("point", whole(0, 7, ""), "rig", "number in the point table of the slide");
     key("x_mm", from_to(-1000.0, 1000.0, "mm"), "rig, guard", "position relative to the nest");
     key("beam", Form::Text, "station", "digital input in the chute, read by its event counter");
+};
+
+pub(super) const LEVEL: &[Key] = keys! {
+    key("module", Form::Text, "rig", "name of the module");
+    key("channel", whole(0, 15, ""), "rig", "channel, from 0");
+};
+
+pub(super) const RACK: &[Key] = keys! {
+    key("unlock_below_c", from_to(0.0, 60.0, "C"), "station", "temperature of the rack below which the door may be unlocked");
+    key("lists", Form::List(&Form::Text), "rig, station", "unloading lists in their order, pass and retest among them");
+};
+
+pub(super) const SOCKET: &[Key] = keys! {
+    key("module", Form::Text, "rig", "module that reads the contact of the part");
+    key("channel", whole(0, 15, ""), "rig", "channel, from 0");
+    key("active", Form::Choice(&["low", "high"]), "rig", "low: the bit reads 0 while the contact is closed");
+    key("select", whole(0, 255, ""), "rig", "number at the multiplexer, used once");
+    key("row", whole(1, 100, ""), "page", "row on the plan of the rack");
+    key("column", whole(1, 100, ""), "page", "column on that plan; a place is used once");
 };

@@ -12,8 +12,6 @@ pub enum Read {
     Board,
     /// One scan of the enabled channels of the coil converter.
     Coil,
-    /// One channel of the coil converter; takes about half the time of a scan.
-    Current(AnalogIn),
     /// The drop across the contact under test.
     Drop,
     /// Both gate counters.
@@ -59,6 +57,15 @@ pub enum Act {
     Wait(Span),
     /// See [`act::Act::ConvertSinceMark`].
     ConvertSinceMark(Span),
+    /// Reads a channel of the coil converter until its magnitude is below a value; see [`act::Act::Below`].
+    Below {
+        /// The channel.
+        channel: AnalogIn,
+        /// The value, in the unit of the channel.
+        amount: f64,
+        /// Time from the last mark to the last reading.
+        within: Span,
+    },
     /// Reads the board until the point is active or the wait ends, and records which came first.
     Until {
         /// Point of the interface board.
@@ -101,6 +108,15 @@ impl Points {
             Act::RampSinceMark(span) => act::Act::RampSinceMark(span),
             Act::Wait(span) => act::Act::Wait(span),
             Act::ConvertSinceMark(span) => act::Act::ConvertSinceMark(span),
+            Act::Below {
+                channel,
+                amount,
+                within,
+            } => act::Act::Below {
+                point: self.analog(channel),
+                amount,
+                within,
+            },
             Act::Until { point, within } => act::Act::Until {
                 point: self.input(point),
                 word: self.board.clone(),
@@ -127,7 +143,6 @@ impl Points {
         match read {
             Read::Board => act::Read::Word(self.board.clone()),
             Read::Coil => act::Read::points(scanned.iter().copied().map(analog)),
-            Read::Current(channel) => act::Read::points([analog(channel)]),
             Read::Drop => act::Read::points([analog(AnalogIn::ContactDrop)]),
             Read::Gates => act::Read::points([Counter::Gate0, Counter::Gate1].map(count)),
             Read::Gate => act::Read::Points {

@@ -38,8 +38,7 @@ impl Closure {
         })
     }
 
-    /// Returns the standard uncertainty of the drop, and likewise of the zero, volts. `reading_v`: standard uncertainty
-    /// of one reading.
+    /// Returns the standard uncertainty of the drop, volts, from that of one reading, `reading_v`. The zero has the same.
     pub fn u_v(&self, reading_v: f64) -> f64 {
         reading_v / (self.readings as f64).sqrt()
     }

@@ -268,7 +268,7 @@ impl DeviceUnderTest for Device {
             calibration.broken = broken;
         });
         let calibration = Calibration::clone(&self.context.calibration);
-        Ok(dut::Calibration::EmRelay(calibration))
+        Ok(dut::Calibration::EmRelay(Box::new(calibration)))
     }
 
     /// Teaches the overshoot models with parts that `pass`, and the trend of the probe contact with every part.
@@ -317,8 +317,8 @@ impl DeviceUnderTest for Device {
 
 /// Returns the observations of a relay test.
 fn observed(record: &TestRecord) -> &Observed {
-    match &record.own {
-        Own::EmRelay(observed) => observed,
-        Own::Nothing => panic!("the record of a relay test has no observations"),
-    }
+    let Own::EmRelay(observed) = &record.own else {
+        panic!("the record of a relay test has no observations");
+    };
+    observed
 }

@@ -6,7 +6,7 @@
 use crate::instrument::act::Word;
 use crate::rig::point::{
     AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Fixture, GatedCounter, MissingPoint,
-    Quantity, Switch, Thermometer,
+    Quantity, Switch, Thermometer, all_wired,
 };
 use crate::rig::supply::{READ_BACK, RangeSelector, SELECT};
 use crate::rig::wiring::Wiring;
@@ -208,10 +208,10 @@ impl Points {
     /// # Errors
     /// Fails with the first point that the rig lacks.
     pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
-        let inputs = all("digital_in", DigitalIn::NAMES, |it| {
+        let inputs = all_wired("digital_in", DigitalIn::NAMES, |it| {
             wiring.digital_input(it)
         })?;
-        let outputs = all("digital_out", DigitalOut::NAMES, |it| {
+        let outputs = all_wired("digital_out", DigitalOut::NAMES, |it| {
             wiring.digital_output(it)
         })?;
         let gained = |input| (input, wiring.analog_in(input).gain);
@@ -224,11 +224,11 @@ impl Points {
                 name: point.name(),
             });
         }
-        let sources = all("analog_out", AnalogOut::NAMES, |it| {
+        let sources = all_wired("analog_out", AnalogOut::NAMES, |it| {
             wiring.analog_output(it)
         })?;
-        let counters = all("counter", Counter::NAMES, |it| wiring.gated_counter(it))?;
-        let [track] = all("temperature", &[TRACK], |it| wiring.thermometer(it))?;
+        let counters = all_wired("counter", Counter::NAMES, |it| wiring.gated_counter(it))?;
+        let [track] = all_wired("temperature", &[TRACK], |it| wiring.thermometer(it))?;
         let range = wiring.range_selector();
         let board = BOARD_INPUTS.map(|it| inputs[it.index()]).into_iter();
         let board = Arc::new(Word {
@@ -284,19 +284,6 @@ impl Points {
     pub fn counter(&self, point: Counter) -> GatedCounter {
         self.counters[point.index()]
     }
-}
-
-fn all<T: Copy, const N: usize>(
-    section: &'static str,
-    names: &[&'static str],
-    handle: impl Fn(&str) -> Option<T>,
-) -> Result<[T; N], MissingPoint> {
-    assert_eq!(names.len(), N, "a handle for each name");
-    let mut found = Vec::with_capacity(N);
-    for name in names {
-        found.push(handle(name).ok_or(MissingPoint { section, name })?);
-    }
-    Ok(std::array::from_fn(|at| found[at]))
 }
 
 #[cfg(test)]

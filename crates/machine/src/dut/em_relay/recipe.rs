@@ -51,7 +51,10 @@ impl KindRecipe for RelayRecipe {
         rig: &Rig,
         stored: Option<Calibration>,
     ) -> Result<Device, MissingPoint> {
-        let stored = stored.map(|Calibration::EmRelay(factors)| factors);
+        let stored = stored.and_then(|it| match it {
+            Calibration::EmRelay(factors) => Some(*factors),
+            Calibration::Thermostat(_) => None,
+        });
         let device = super::Device::new(recipe, self, rig, stored)?;
         Ok(Device::EmRelay(Box::new(device)))
     }

@@ -36,6 +36,9 @@ pub struct CalibrationSettings {
     /// File of the reference parts, next to `rig.toml`; `None` when no recipe needs them.
     #[serde(rename = "golden")]
     pub reference_file: Option<String>,
+    /// File with the certificate of the rack, next to `rig.toml`; `None` when there is none.
+    #[serde(rename = "rack")]
+    pub certificate_file: Option<String>,
 }
 
 /// A certified value.

@@ -1,13 +1,16 @@
 //! Uncertainty budgets, from the accuracies of the instruments and the terms of each method.
 
 use super::edges::Crossing;
-use super::plan::{CurrentRange, Plan};
+use super::plan::{CurrentRange, DcPlan, Plan};
 use crate::gauge::Budget;
-use crate::gauge::budget::{rectangular, resolution};
+use crate::gauge::budget::rectangular;
 use scpi::Accuracy;
 
 /// Readings of the drop over time that make its last value: the two around 200 ms.
 pub const LAST_DROPS: usize = 2;
+
+/// Averaging time of the reading that shows whether a leakage has settled, periods of the mains.
+const BRIEF: f64 = 0.1;
 
 /// Returns the standard uncertainty of an applied or measured value: gain and offset, without noise.
 pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
@@ -19,75 +22,103 @@ pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
 pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Budget {
     let meter = &range.meter;
     Budget::default()
-        .with("gain", rectangular(meter.gain(ampere)) / unit_a)
-        .with("offset", rectangular(meter.offset) / unit_a)
-        .with("settling", rectangular(moved) / unit_a)
+        .with_bounds("gain", meter.gain(ampere) / unit_a)
+        .with_bounds("offset", meter.offset / unit_a)
+        .with_bounds("settling", moved / unit_a)
         .with_random("noise", meter.noise_over(range.periods) / unit_a)
+}
+
+/// Returns the budget of a leakage, microamperes, of which the current of the open fixture is subtracted when it is known.
+/// The difference has the noise of both readings, and no offset.
+pub fn leakage(
+    range: &CurrentRange,
+    (volts, ampere): (f64, f64),
+    moved: f64,
+    is_referenced: bool,
+) -> Budget {
+    let share = (range.source.gain(volts) + range.source.offset) / volts;
+    if !is_referenced {
+        let budget = current(range, ampere, moved, 1e-6);
+        return budget.with_bounds("source", share * ampere / 1e-6);
+    }
+    let noise_a = range.meter.noise_over(range.periods);
+    // The first of both readings is short and noisy: only more than its noise shows a current that settles.
+    let moved = (moved.abs() - 3.0 * range.meter.noise_over(BRIEF)).max(0.0);
+    Budget::default()
+        .with_bounds("gain", range.meter.gain(ampere) / 1e-6)
+        .with_bounds("source", share * ampere / 1e-6)
+        .with_bounds("settling", moved / 1e-6)
+        .with("open fixture", noise_a / 1e-6)
+        .with_random("noise", noise_a / 1e-6)
 }
 
 /// Returns the budget of a threshold of the control voltage, V, that lies in an interval `width_v` wide.
 pub fn threshold(plan: &Plan, volts: f64, width_v: f64) -> Budget {
     Budget::default()
-        .with("source", applied_u(&plan.input.source, volts))
-        .with("dwell", rectangular(plan.unseen_v()))
-        .with_random("step", resolution(width_v))
+        .with_bounds("source gain", plan.input.source.gain(volts))
+        .with_bounds("source offset", plan.input.source.offset)
+        // In at most one search of four a step lies so close to the threshold.
+        .with_bounds("dwell", plan.unseen_v() / 2.0)
+        .with_random_bounds("step", width_v / 2.0)
 }
 
 /// Returns the budget of a time, microseconds, between a control edge and a crossing of the output.
 pub fn time(plan: &Plan, step_s: f64, control: &Crossing, output: &Crossing) -> Budget {
     let took_s = output.at_s - control.at_s;
     Budget::default()
-        .with(
+        .with_bounds(
             "time base",
-            rectangular(plan.time.gain(took_s) + plan.time.offset) * 1e6,
+            (plan.time.gain(took_s) + plan.time.offset) * 1e6,
         )
-        .with_random("sample interval", step_s / 6f64.sqrt() * 1e6)
+        .with_random_bounds("sample before the edge", step_s / 2.0 * 1e6)
+        .with_random_bounds("sample before the crossing", step_s / 2.0 * 1e6)
         .with_random("threshold level", output.u_s * 1e6)
         .with_random("control edge", control.u_s * 1e6)
 }
 
 /// Returns the budget of a resistance, milliohms, from the drops at half and at full current. The offsets of source and
-/// meter are the same at both and cancel. `heated_v` is the rise of the drop by heat during the measurement, V.
-pub fn resistance(plan: &Plan, ohm: f64, heated_v: f64) -> Budget {
+/// meter are the same at both and cancel. `heated_v` is the rise of the drop by heat during the measurement, V. The first
+/// reading is warmer than the part was, and the last one is warmer than its own current explains: one makes up for most of
+/// the other, and half of the rise is left where the time constant of the junction is 10 to 40 ms.
+pub fn resistance(plan: &DcPlan, ohm: f64, heated_v: f64) -> Budget {
     let (source, meter) = (&plan.drop.source, &plan.drop.meter);
     let apart_a = plan.drop_a / 2.0;
     let noise_v = 2f64.sqrt() * meter.noise_over(1.0);
     Budget::default()
-        .with("voltage gain", rectangular(meter.gain(ohm)) * 1e3)
-        .with("current gain", rectangular(source.gain(ohm)) * 1e3)
-        .with("heat", rectangular(heated_v / apart_a) * 1e3)
+        .with_bounds("voltage gain", meter.gain(ohm) * 1e3)
+        .with_bounds("current gain", source.gain(ohm) * 1e3)
+        .with_bounds("heat", heated_v / 2.0 / apart_a * 1e3)
         .with_random("noise", noise_v / apart_a * 1e3)
 }
 
-/// Returns the budget of a drop at the rated current, V, from that of the resistance in milliohms. The rated current heats
-/// the output with the square of its ratio to the larger measuring current, which raised the drop by `rise_v`.
-pub fn drop_at_rated(plan: &Plan, resistance: &Budget, rise_v: f64) -> Budget {
+/// Returns the budget of a drop at the rated current, V, before that current has warmed the part, from the budget of the
+/// resistance in milliohms.
+pub fn drop_at_rated(plan: &DcPlan, resistance: &Budget) -> Budget {
     let mut budget = resistance.clone();
     for term in &mut budget.0 {
         term.u *= plan.rated_a / 1e3;
     }
-    let ratio = plan.rated_a / plan.drop_a;
-    let hotter_v = rise_v.max(0.0) * ratio * (ratio * ratio - 1.0);
-    budget.with("heat at rated current", rectangular(hotter_v))
+    budget
 }
 
 /// Returns the budget of a rise of the drop, mV. Offsets cancel.
-pub fn drift(plan: &Plan, rise_v: f64) -> Budget {
+pub fn drift(plan: &DcPlan, rise_v: f64) -> Budget {
     let meter = &plan.drop.meter;
     let noise_v = meter
         .noise_over(1.0)
         .hypot(meter.noise_over(LAST_DROPS as f64));
     Budget::default()
-        .with("voltage gain", rectangular(meter.gain(rise_v)) * 1e3)
+        .with_bounds("voltage gain", meter.gain(rise_v) * 1e3)
         .with_random("noise", noise_v * 1e3)
 }
 
-/// Adds to the budget of a current of the LED what the error of the applied voltage makes of it. Above its knee the LED
-/// in series with its resistor takes a current that rises at most `STEEP` times as fast as in proportion.
+/// Adds to the budget of a current of the LED what the error of the applied voltage makes of it. The current is that of
+/// the voltage above the knee of the LED through its resistor.
 pub fn applied(budget: Budget, range: &CurrentRange, volts: f64, value: f64) -> Budget {
-    const STEEP: f64 = 2.0;
-    budget.with(
-        "source",
-        STEEP * value * applied_u(&range.source, volts) / volts,
-    )
+    const KNEE_V: f64 = 1.2;
+    const LEAST_V: f64 = 0.5;
+    let share = value / (volts - KNEE_V).max(LEAST_V);
+    budget
+        .with_bounds("source gain", share * range.source.gain(volts))
+        .with_bounds("source offset", share * range.source.offset)
 }

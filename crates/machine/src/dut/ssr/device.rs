@@ -4,8 +4,10 @@ use super::learned::Learned;
 use super::measure::Test;
 use super::plan::Plan;
 use super::points::Points;
-use super::recipe::SsrRecipe;
+use super::recipe::{Output, SsrRecipe};
+use super::references::Fixture;
 use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
+use crate::dut::record::{Own, Stop};
 use crate::dut::{Procedure, Recipe, TestRecord};
 use crate::rig::point::MissingPoint;
 use std::sync::Arc;
@@ -22,6 +24,10 @@ pub struct Device {
     pub points: Arc<Points>,
     /// Thresholds of earlier parts.
     pub learned: Learned,
+    /// Number of parts of the lot that have been judged.
+    pub judged: u32,
+    /// What the fixture has shown to an earlier part.
+    pub fixture: Fixture,
 }
 
 impl Device {
@@ -30,7 +36,7 @@ impl Device {
     /// # Errors
     /// Fails with the first point or instrument that the rig lacks, an instrument without a range for the test included.
     pub fn new(recipe: Arc<Recipe>, ssr: &SsrRecipe, rig: &Rig) -> Result<Self, MissingPoint> {
-        let points = Points::resolve(rig.wiring)?;
+        let points = Points::resolve(rig.wiring, ssr.part.output != Output::Dc)?;
         let plan = Plan::of(
             ssr,
             &recipe.limits,
@@ -47,6 +53,8 @@ impl Device {
             plan: Arc::new(plan),
             points: Arc::new(points),
             learned: Learned::default(),
+            judged: 0,
+            fixture: Fixture::default(),
         })
     }
 }
@@ -57,6 +65,16 @@ impl DeviceUnderTest for Device {
     }
 
     fn learn(&mut self, record: &TestRecord, pass: bool) {
+        if let Own::Ssr(fixture) = record.own {
+            self.fixture = Fixture {
+                references: fixture.references.or(self.fixture.references),
+                open: fixture.open.or(self.fixture.open),
+            };
+        }
+        // A void part is no sample.
+        if !matches!(record.why_stopped(), Some(Stop::Void(_) | Stop::Trouble(_))) {
+            self.judged = self.judged.saturating_add(1);
+        }
         if pass {
             self.learned.add(record);
         }

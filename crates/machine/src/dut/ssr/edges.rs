@@ -6,11 +6,15 @@
 
 use crate::gauge::budget::resolution;
 use crate::instrument::query::Waveform;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Share of the load voltage at which the output counts as on.
 const ON: f64 = 0.9;
 /// Share at which it counts as off.
 const OFF: f64 = 0.1;
+/// Least share of a step that one interval of samples must hold so that the step counts as a jump within it.
+const JUMP: f64 = 0.5;
 /// Least height of the pulse, in standard deviations of the noise before it.
 const DISTINCT: f64 = 8.0;
 /// Codes that a converter of 8 bits has at least between the levels of a signal.
@@ -46,6 +50,14 @@ pub struct Edges {
     pub off: Option<Crossing>,
 }
 
+/// Returns the edges of a pulse in the records of control and output; none for another number of records.
+pub fn pulse(records: &[Arc<Waveform>]) -> Option<Edges> {
+    match records {
+        [control, output] => edges(control, output),
+        _other => None,
+    }
+}
+
 /// Returns the edges of a pulse; none when the record holds no whole pulse, or a number that is not finite.
 pub fn edges(control: &Waveform, output: &Waveform) -> Option<Edges> {
     let (input, load) = (Signal::of(control)?, Signal::of(output)?);
@@ -63,8 +75,12 @@ pub fn edges(control: &Waveform, output: &Waveform) -> Option<Edges> {
         return None;
     }
     let half_v = f64::midpoint(low_v, high_v);
-    let rise = input.crossing(1, count, half_v, Toward::Up, noise_v)?;
-    let fall = input.crossing(rise.index + 1, count, half_v, Toward::Down, noise_v)?;
+    let step = Step {
+        height_v: high_v - low_v,
+        noise_v,
+    };
+    let rise = input.crossing(1..count, half_v, Toward::Up, step)?;
+    let fall = input.crossing(rise.index + 1..count, half_v, Toward::Down, step)?;
     let during = rise.index..fall.index;
     if rise.index < FEWEST || during.len() < FEWEST || count - fall.index < FEWEST {
         return None;
@@ -75,11 +91,15 @@ pub fn edges(control: &Waveform, output: &Waveform) -> Option<Edges> {
     let last = fall.index - (during.len() / 10).max(AROUND)..fall.index - 1;
     let final_v = source_v - median(&load.volts[last]);
     let (mut on, mut off) = (None, None);
+    let step = Step {
+        height_v: final_v,
+        noise_v,
+    };
     if final_v > source_v / 2.0 {
         let level_v = source_v - ON * final_v;
-        on = load.crossing(rise.index, fall.index, level_v, Toward::Down, noise_v);
+        on = load.crossing(rise.index..fall.index, level_v, Toward::Down, step);
         let level_v = source_v - OFF * final_v;
-        off = load.crossing(fall.index, count, level_v, Toward::Up, noise_v);
+        off = load.crossing(fall.index..count, level_v, Toward::Up, step);
     }
     Some(Edges {
         step_s: control.step_s,
@@ -94,6 +114,13 @@ pub fn edges(control: &Waveform, output: &Waveform) -> Option<Edges> {
 enum Toward {
     Up,
     Down,
+}
+
+/// Height of a step, and the noise of its levels.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    height_v: f64,
+    noise_v: f64,
 }
 
 /// Samples of one channel in volts.
@@ -115,7 +142,7 @@ impl Signal {
     }
 
     /// Returns the standard deviation of samples of a level, at least that of the steps of the converter.
-    fn noise_v(&self, range: std::ops::Range<usize>) -> f64 {
+    fn noise_v(&self, range: Range<usize>) -> f64 {
         let level = &self.volts[range];
         let mean = level.iter().sum::<f64>() / level.len() as f64;
         let squares: f64 = level.iter().map(|it| (it - mean).powi(2)).sum();
@@ -134,24 +161,28 @@ impl Signal {
         quantum.fold(span_v / FEWEST_CODES, f64::min)
     }
 
-    /// Returns the first crossing among the samples from `from` to before `to`; two samples in a row must be beyond the
-    /// level, so that one stray sample makes none.
+    /// Returns the first crossing of a level among the samples `within`. Two samples in a row must be beyond the level,
+    /// so that a stray sample makes no crossing. Between both samples the crossing lies on a straight line. When one
+    /// interval holds most of the step, the samples do not show the instant of the jump; then the crossing is the
+    /// middle of that interval.
     fn crossing(
         &self,
-        from: usize,
-        to: usize,
+        within: Range<usize>,
         level_v: f64,
         toward: Toward,
-        noise_v: f64,
+        step: Step,
     ) -> Option<Crossing> {
         let beyond = |index: usize| match toward {
             Toward::Up => self.volts[index] >= level_v,
             Toward::Down => self.volts[index] <= level_v,
         };
-        let last = to.min(self.volts.len()).checked_sub(1)?;
-        let index = (from.max(1)..last).find(|it| beyond(*it) && beyond(it + 1))?;
+        let last = within.end.min(self.volts.len()).checked_sub(1)?;
+        let index = (within.start.max(1)..last).find(|it| beyond(*it) && beyond(it + 1))?;
         let (before_v, at_v) = (self.volts[index - 1], self.volts[index]);
-        let part = ((level_v - before_v) / (at_v - before_v)).clamp(0.0, 1.0);
+        let part = match (at_v - before_v).abs() > JUMP * step.height_v.abs() {
+            true => 0.5,
+            false => ((level_v - before_v) / (at_v - before_v)).clamp(0.0, 1.0),
+        };
         let part = if part.is_finite() { part } else { 1.0 };
         let (first, behind) = (
             index.saturating_sub(1 + AROUND),
@@ -161,7 +192,7 @@ impl Signal {
         let took_s = (behind - first) as f64 * self.step_s;
         Some(Crossing {
             at_s: self.start_s + (index as f64 - 1.0 + part) * self.step_s,
-            u_s: (noise_v * took_s / rise_v).min(took_s),
+            u_s: (step.noise_v * took_s / rise_v).min(took_s),
             index,
         })
     }

@@ -1,12 +1,14 @@
 //! Whether a rig can carry out a recipe: points, instruments, their ranges and their programs.
 
+use super::ac_plan::{AcPlan, LINE_OHM, LOOP_OHM, MOST_LOOP_V};
 use super::measure::{Stage, State};
 use super::parameter::Parameter;
 use super::plan::{Lack, Plan};
 use super::points::{Device, Points};
 use super::program::drop_count;
-use super::recipe::SsrRecipe;
+use super::recipe::{Output, SsrRecipe};
 use crate::dut::Kind;
+use crate::dut::characteristic::KindCharacteristic;
 use crate::dut::device::Rig;
 use crate::dut::recipe::Limits;
 use crate::gauge::Rule;
@@ -14,9 +16,12 @@ use crate::instrument::act::Act;
 use crate::rig::fault::Fault;
 use crate::rig::wiring::Wiring;
 
+/// Share of the rated voltage up to which the line may go.
+const ROOM_OF_RATING: f64 = 1.0;
+
 /// Returns every reason why the rig cannot carry out the recipe.
 pub fn infeasible(ssr: &SsrRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
-    let points = Points::resolve(rig.wiring);
+    let points = Points::resolve(rig.wiring, ssr.part.output != Output::Dc);
     let (wiring, points) = match Kind::Ssr.reach(rig, points, None) {
         Ok(reach) => reach,
         Err(fault) => return vec![fault],
@@ -26,6 +31,12 @@ pub fn infeasible(ssr: &SsrRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
         Err(lack) => return vec![without_range(&lack, &points, &wiring)],
     };
     let mut faults = undecided(limits);
+    faults.extend(foreign(ssr, limits));
+    faults.extend(
+        plan.ac()
+            .into_iter()
+            .flat_map(|ac| off_line(ssr, ac, &points, &wiring)),
+    );
     faults.extend(backwards(&plan));
     faults.extend(unserved(&plan, &points, &wiring));
     faults
@@ -38,6 +49,62 @@ fn without_range(lack: &Lack, points: &Points, wiring: &Wiring) -> Fault {
     let found = format!("{quantity} {} at {}", lack.value, lack.device);
     let expected = format!("a value in a range of instruments/{profile}.toml accuracy");
     Fault::new("test", found, expected)
+}
+
+/// Refuses limits of characteristics that an output of this kind does not have.
+fn foreign(ssr: &SsrRecipe, limits: &Limits) -> Vec<Fault> {
+    let output = ssr.part.output;
+    let wrong = Parameter::ALL.into_iter().filter(|it| !output.has(*it));
+    let limited = wrong.filter(|it| !limits.of(*it).is_open());
+    let fault = |it: Parameter| {
+        let key = format!("limits.{}", it.definition().key);
+        let expected = format!("no limit, because part.output is \"{}\"", output.name());
+        Fault::new(key, "a limit", expected)
+    };
+    limited.map(fault).collect()
+}
+
+/// Refuses a line that the source or the loads of the fixture cannot make.
+fn off_line(ssr: &SsrRecipe, ac: &AcPlan, points: &Points, wiring: &Wiring) -> Vec<Fault> {
+    let part = &ssr.part;
+    let profile = &wiring
+        .instrument(points.instrument(Device::AcSource))
+        .profile;
+    let refuses = |level_v: f64, hz: f64| {
+        let arguments = [("level_v", level_v), ("frequency_hz", hz), ("limit_a", 1.0)];
+        let program = profile.program("set", &arguments);
+        program
+            .err()
+            .map(|error| format!("what instruments/{}.toml has: {error}", profile.name))
+    };
+    let load_a = part.mains_v / LINE_OHM;
+    let most_v = ROOM_OF_RATING * part.rated_v;
+    let all = [
+        ("part.mains_v", part.mains_v, refuses(part.mains_v, 50.0)),
+        ("part.mains_hz", part.mains_hz, refuses(24.0, part.mains_hz)),
+        (
+            "part.mains_v",
+            part.mains_v,
+            (part.mains_v > most_v).then(|| format!("at most {most_v}, the rated voltage")),
+        ),
+        (
+            "part.least_a",
+            part.least_a,
+            (part.least_a > load_a).then(|| {
+                format!("at most {load_a:.3}, mains_v over the {LINE_OHM} ohm of the line")
+            }),
+        ),
+        (
+            "part.rated_a",
+            part.rated_a,
+            (ac.loop_v() > MOST_LOOP_V)
+                .then(|| format!("a current that {MOST_LOOP_V} V drive through {LOOP_OHM} ohm")),
+        ),
+    ];
+    let wrong = all.into_iter();
+    wrong
+        .filter_map(|(key, found, expected)| Some(Fault::new(key, found, expected?)))
+        .collect()
 }
 
 /// Refuses sides that the conformity test cannot decide.
@@ -72,10 +139,11 @@ fn backwards(plan: &Plan) -> Option<Fault> {
 /// Returns a fault for each instrument whose profile lacks a program of the test, or refuses one of its arguments.
 fn unserved(plan: &Plan, points: &Points, wiring: &Wiring) -> Vec<Fault> {
     let mut faults: Vec<Fault> = Vec::new();
-    for device in Device::ALL {
+    let stages = Stage::all(&plan.output);
+    for device in Device::ALL.iter().filter(|it| points.has(**it)) {
         let instrument = points.instrument(*device);
         let profile = &wiring.instrument(instrument).profile;
-        let all = Stage::ALL.iter().flat_map(|stage| {
+        let all = stages.iter().flat_map(|stage| {
             let mut state = State::default();
             state.acts(*stage, plan, points)
         });

@@ -43,13 +43,23 @@ pub enum Finding {
     DropTooHigh,
     /// The record of the digitizer holds no control pulse, or no whole one.
     PulseNotRecorded,
+    /// One polarity of the output does not conduct.
+    HalfWave,
+    /// The drop of the conducting AC output exceeds the range of its channel.
+    PeakDropTooHigh,
+    /// The mirror contacts do not show the position to which a contactor was switched; detail: the point.
+    Contactor,
+    /// The voltage of the AC source is not the one that was set.
+    WrongMains,
+    /// A reference of the fixture reads more than a tenth off its value.
+    WrongReference,
     /// An instrument has delivered other values than its programs return; detail: the instrument.
     NotDelivered,
 }
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 23] = [
         Self::PinOpen,
         Self::ProbeChainOpen,
         Self::Turned,
@@ -67,6 +77,11 @@ impl Finding {
         Self::TurnsOffTooLate,
         Self::DropTooHigh,
         Self::PulseNotRecorded,
+        Self::HalfWave,
+        Self::PeakDropTooHigh,
+        Self::Contactor,
+        Self::WrongMains,
+        Self::WrongReference,
         Self::NotDelivered,
     ];
 
@@ -106,6 +121,11 @@ impl Finding {
             }
             Self::DropTooHigh => output("ssr_drop_too_high").proves(P::OnResistance, High),
             Self::PulseNotRecorded => Entry::void("ssr_pulse_not_recorded"),
+            Self::HalfWave => output("ssr_half_wave").proves(P::HalfWave, High),
+            Self::PeakDropTooHigh => output("ssr_peak_drop_too_high").proves(P::Drop, High),
+            Self::Contactor => Entry::void("ssr_contactor"),
+            Self::WrongMains => Entry::void("ssr_wrong_mains"),
+            Self::WrongReference => Entry::void("ssr_wrong_reference"),
             Self::NotDelivered => Entry::void("ssr_not_delivered"),
         }
     }

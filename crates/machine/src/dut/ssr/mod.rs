@@ -1,4 +1,4 @@
-//! Solid-state relay: an LED in front of a MOSFET output, measured with SCPI instruments.
+//! Solid-state relay: an LED in front of a MOSFET or triac output, measured with SCPI instruments.
 //!
 //! | question | file |
 //! |---|---|
@@ -7,14 +7,19 @@
 //! | which points and instruments of the rig it needs | [`points`] |
 //! | which levels, ranges and times follow from the recipe | [`plan`] |
 //! | which programs the instruments run | [`program`] |
-//! | how accurate a figure is | [`accuracy`] |
+//! | which levels, scales and times follow for an AC load | [`ac_plan`] |
+//! | how accurate a figure is | [`accuracy`], [`ac_accuracy`] |
+//! | which errors of the digitizer the references of the fixture reveal | [`references`] |
 //! | where the edges of a record are | [`edges`] |
+//! | what a record of line or loop shows | [`wave`] |
 //! | how a search finds a threshold, and where it begins | [`search`], [`learned`] |
 //! | what a test finds in addition to figures | [`finding`] |
 //! | whether a rig can carry out a recipe | [`feasible`] |
 //! | the test | [`measure`] |
 //! | the process card | [`card`] |
 
+pub mod ac_accuracy;
+pub mod ac_plan;
 pub mod accuracy;
 pub mod bins;
 pub mod card;
@@ -31,10 +36,10 @@ pub mod plan;
 pub mod points;
 pub mod program;
 pub mod recipe;
+pub mod references;
 pub mod search;
+pub mod wave;
 
-#[cfg(test)]
-mod bench;
 #[cfg(test)]
 mod tests;
 
@@ -51,6 +56,6 @@ pub const DEFINITION: KindDefinition = KindDefinition {
     sections: keys::SECTIONS,
     bins: bins::WORST_FIRST,
     characteristics: || Parameter::ALL.map(Into::into).to_vec(),
-    stages: || measure::Stage::NAMES.to_vec(),
+    stages: || measure::Label::ALL.map(measure::Label::name).to_vec(),
     findings: || Finding::ALL.map(Into::into).to_vec(),
 };

@@ -1,9 +1,10 @@
 //! Levels, ranges and times of a test, as they follow from the recipe and from the accuracies of the instruments.
 
+use super::ac_plan::AcPlan;
 use super::accuracy::applied_u;
 use super::parameter::Parameter;
 use super::points::{Device, Points};
-use super::recipe::{Method, SsrRecipe};
+use super::recipe::{Method, Output, SsrRecipe};
 use crate::dut::recipe::Limits;
 use crate::gauge::Rule;
 use crate::gauge::budget::COVERAGE_FACTOR;
@@ -24,10 +25,12 @@ const ROOM: f64 = 1.2;
 /// Time constants after which an output has settled where no limit says more.
 const SETTLED: f64 = 10.0;
 /// Currents and drop for which ranges are chosen where the recipe has no limit: A, A, V.
-const USUAL_INPUT_A: f64 = 0.008;
-const USUAL_SMALL_A: f64 = 80e-6;
+const USUAL_INPUT_A: f64 = 0.05;
+const USUAL_SMALL_A: f64 = 1e-3;
 const USUAL_DROP_V: f64 = 1.5;
-/// One period of the mains, s.
+/// Largest share of the load current at which an output without a limit of its leakage counts as blocked.
+const OFF: f64 = 0.1;
+/// Period over which meters average, s: one of 50 Hz mains.
 pub const PERIOD_S: f64 = 0.02;
 
 /// Range of a source of voltage that measures its current; the limit of the current is the end of the meter's range.
@@ -75,14 +78,6 @@ pub struct Plan {
     pub control_v: f64,
     /// Voltage at the reversed input, V, above 0.
     pub reverse_v: f64,
-    /// Voltage of the blocked output, V.
-    pub rated_v: f64,
-    /// Current of the conducting output, A.
-    pub rated_a: f64,
-    /// Larger one of the two currents of the resistance, A; the other is half of it.
-    pub drop_a: f64,
-    /// True when the output conducts when reversed.
-    pub body_diode: bool,
     /// True when a search follows the conformity test.
     pub searches: bool,
     /// Width of the interval at which a search ends, V.
@@ -105,14 +100,79 @@ pub struct Plan {
     pub reverse: CurrentRange,
     /// Ranges of the load circuit.
     pub load: CurrentRange,
+    /// Errors of the digitizer's base of time.
+    pub time: Accuracy,
+    /// Number of parts of a lot of which the sampled characteristics are measured; none for all.
+    pub sampling: Option<u32>,
+    /// Characteristics with a limit; the others sort no part.
+    pub judged: Vec<Parameter>,
+    /// Characteristics with an upper limit. For these, a reading over range proves the limit exceeded.
+    pub bounded: Vec<Parameter>,
+    /// What the output switches.
+    pub output: OutputPlan,
+}
+
+/// Plan of the output.
+#[derive(Debug, Clone, PartialEq)]
+pub enum OutputPlan {
+    /// A DC load.
+    Dc(DcPlan),
+    /// An AC load.
+    Ac(AcPlan),
+}
+
+/// Plan of an output that switches a DC load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DcPlan {
+    /// Voltage of the blocked output, V.
+    pub rated_v: f64,
+    /// Current of the conducting output, A.
+    pub rated_a: f64,
+    /// Larger of the two currents at which the resistance is measured, A; the other is half of it.
+    pub drop_a: f64,
+    /// True when the reversed output conducts through its body diode.
+    pub body_diode: bool,
+    /// Largest load current at which the output counts as blocked, A.
+    pub blocked_a: f64,
     /// Ranges of the leakage before conduction.
     pub leakage_cold: CurrentRange,
     /// Ranges of the leakage after conduction.
     pub leakage_hot: CurrentRange,
     /// Ranges of the resistance.
     pub drop: DropRange,
-    /// Errors of the digitizer's base of time.
-    pub time: Accuracy,
+}
+
+/// Finds the measuring ranges of the instruments.
+struct Ranges<'a> {
+    points: &'a Points,
+    wiring: &'a Wiring,
+}
+
+impl Ranges<'_> {
+    fn find(&self, device: Device, quantity: Quantity, value: f64) -> Result<Accuracy, Lack> {
+        let lack = Lack {
+            device,
+            quantity,
+            value,
+        };
+        let instrument = self.points.instrument(device);
+        let all = &self.wiring.instrument(instrument).profile.accuracy;
+        range(all, quantity, value).ok_or(lack)
+    }
+
+    fn currents(
+        &self,
+        device: Device,
+        level_v: f64,
+        ampere: f64,
+        periods: f64,
+    ) -> Result<CurrentRange, Lack> {
+        Ok(CurrentRange {
+            source: self.find(device, Quantity::SourceVoltageV, level_v)?,
+            meter: self.find(device, Quantity::CurrentA, ampere)?,
+            periods,
+        })
+    }
 }
 
 impl Plan {
@@ -129,50 +189,31 @@ impl Plan {
     ) -> Result<Self, Lack> {
         let (part, test) = (&ssr.part, &ssr.test);
         let high = |parameter| limits.of(parameter).high;
-        let find = |device, quantity, value: f64| {
-            let all = &wiring
-                .instrument(points.instrument(device))
-                .profile
-                .accuracy;
-            range(all, quantity, value).ok_or(Lack {
-                device,
-                quantity,
-                value,
-            })
-        };
-        let currents = |device, level_v, ampere: f64, periods| {
-            Ok(CurrentRange {
-                source: find(device, Quantity::SourceVoltageV, level_v)?,
-                meter: find(device, Quantity::CurrentA, ampere)?,
-                periods,
-            })
-        };
+        let ranges = Ranges { points, wiring };
         let time_constant_s = test.time_constant_ms / 1e3;
         let settled_s = SETTLED * time_constant_s;
-        let within = |parameter| high(parameter).map_or(settled_s, |us| us / 1e6);
-        let (on_s, off_s) = (
+        let within = |parameter| high(parameter).map_or(settled_s, |us| us.max(0.0) / 1e6);
+        let (mut on_s, mut off_s) = (
             within(Parameter::TurnOnTime),
             within(Parameter::TurnOffTime),
         );
-        let leakage = |parameter| {
-            let most_a = high(parameter).map_or(USUAL_SMALL_A, |ua| ROOM * ua / 1e6);
-            currents(Device::SmuOut, part.rated_v, most_a, 1.0)
-        };
         let input_a = high(Parameter::InputCurrent).map_or(USUAL_INPUT_A, |ma| ROOM * ma / 1e3);
         let reverse_a = high(Parameter::ReverseCurrent);
         let reverse_a = reverse_a.map_or(USUAL_SMALL_A, |ua| ROOM * ua / 1e6);
-        let drop_a = part.rated_a.min(MOST_A);
-        let drop_v = high(Parameter::OnResistance);
-        let drop_v = drop_v.map_or(USUAL_DROP_V, |mohm| ROOM * mohm / 1e3 * drop_a);
+        let output = match part.output {
+            Output::Dc => OutputPlan::Dc(DcPlan::of(ssr, limits, &ranges)?),
+            Output::AcZeroCross | Output::AcRandom => {
+                (on_s, off_s) = (on_s + 1.0 / part.mains_hz, off_s + 1.0 / part.mains_hz);
+                OutputPlan::Ac(AcPlan::of(ssr, limits, &ranges)?)
+            }
+        };
         let hold = (on_s.max(off_s) / PERIOD_S).clamp(0.01, 10.0);
-        let input = currents(Device::SmuIn, part.control_v, input_a, hold)?;
+        let input = ranges.currents(Device::SmuIn, part.control_v, input_a, hold)?;
+        let is_bounded = |of: &Parameter| high(*of).is_some();
+        let is_judged = |of: &Parameter| !limits.of(*of).is_open();
         Ok(Self {
             control_v: part.control_v,
             reverse_v: test.reverse_v,
-            rated_v: part.rated_v,
-            rated_a: part.rated_a,
-            drop_a,
-            body_diode: part.body_diode,
             searches: test.method == Method::Bisect,
             resolution_v: test.resolution_mv / 1e3,
             time_constant_s,
@@ -185,16 +226,41 @@ impl Plan {
             on_s,
             off_s,
             input,
-            reverse: currents(Device::SmuIn, test.reverse_v, reverse_a, 0.1)?,
-            load: currents(Device::SmuOut, LOAD_V, LOAD_V / LOAD_OHM, 0.01)?,
-            leakage_cold: leakage(Parameter::LeakageCold)?,
-            leakage_hot: leakage(Parameter::LeakageHot)?,
-            drop: DropRange {
-                source: find(Device::SmuOut, Quantity::SourceCurrentA, drop_a)?,
-                meter: find(Device::SmuOut, Quantity::VoltageV, drop_v)?,
-            },
-            time: find(Device::Digitizer, Quantity::TimeS, 0.0)?,
+            reverse: ranges.currents(Device::SmuIn, test.reverse_v, reverse_a, 0.1)?,
+            load: ranges.currents(Device::SmuOut, LOAD_V, LOAD_V / LOAD_OHM, 0.01)?,
+            time: ranges.find(Device::Digitizer, Quantity::TimeS, 0.0)?,
+            sampling: test.sampling,
+            judged: Parameter::ALL.into_iter().filter(is_judged).collect(),
+            bounded: Parameter::ALL.into_iter().filter(is_bounded).collect(),
+            output,
         })
+    }
+
+    /// Returns true when the recipe limits the characteristic, so that it can fail a part.
+    pub fn judges(&self, of: Parameter) -> bool {
+        self.judged.contains(&of)
+    }
+
+    /// Returns true when the recipe has an upper limit of the characteristic, so that a reading over range fails the
+    /// part.
+    pub fn bounds(&self, of: Parameter) -> bool {
+        self.bounded.contains(&of)
+    }
+
+    /// Returns the plan of an output for a DC load.
+    pub fn dc(&self) -> Option<&DcPlan> {
+        match &self.output {
+            OutputPlan::Dc(dc) => Some(dc),
+            OutputPlan::Ac(_) => None,
+        }
+    }
+
+    /// Returns the plan of an output for an AC load.
+    pub fn ac(&self) -> Option<&AcPlan> {
+        match &self.output {
+            OutputPlan::Dc(_) => None,
+            OutputPlan::Ac(ac) => Some(ac),
+        }
     }
 
     /// Returns the time that the output needs to follow a step of a search. Close to its threshold it turns on late, by
@@ -225,5 +291,47 @@ impl Plan {
         let wanted = self.record_s() / (0.01 * self.on_s.min(self.off_s));
         let depths = [1e3, 1e4];
         depths.into_iter().find(|it| *it >= wanted).unwrap_or(1e5)
+    }
+}
+
+impl DcPlan {
+    fn of(ssr: &SsrRecipe, limits: &Limits, ranges: &Ranges) -> Result<Self, Lack> {
+        let part = &ssr.part;
+        let high = |parameter| limits.of(parameter).high;
+        let leakage = |parameter| {
+            let most_a = high(parameter).map_or(USUAL_SMALL_A, |ua| ROOM * ua / 1e6);
+            ranges.currents(Device::SmuOut, part.rated_v, most_a, 1.0)
+        };
+        let drop_a = part.rated_a.min(MOST_A);
+        let drop_v = high(Parameter::OnResistance);
+        let drop_v = drop_v.map_or(USUAL_DROP_V, |mohm| ROOM * mohm / 1e3 * drop_a);
+        let leak_ua = high(Parameter::LeakageHot).or(high(Parameter::LeakageCold));
+        let most_a = OFF * LOAD_V / LOAD_OHM;
+        Ok(Self {
+            rated_v: part.rated_v,
+            rated_a: part.rated_a,
+            drop_a,
+            body_diode: part.body_diode,
+            blocked_a: leak_ua.map_or(most_a, |ua| (ua / 1e6).min(most_a)),
+            leakage_cold: leakage(Parameter::LeakageCold)?,
+            leakage_hot: leakage(Parameter::LeakageHot)?,
+            drop: DropRange {
+                source: ranges.find(Device::SmuOut, Quantity::SourceCurrentA, drop_a)?,
+                meter: ranges.find(Device::SmuOut, Quantity::VoltageV, drop_v)?,
+            },
+        })
+    }
+}
+
+impl AcPlan {
+    fn of(ssr: &SsrRecipe, limits: &Limits, ranges: &Ranges) -> Result<Self, Lack> {
+        let digitizer = |value| ranges.find(Device::Digitizer, Quantity::VoltageV, value);
+        let source = |value| ranges.find(Device::AcSource, Quantity::VoltageV, value);
+        Ok(Self::new(
+            ssr,
+            limits,
+            digitizer(0.0)?,
+            source(ssr.part.mains_v)?,
+        ))
     }
 }

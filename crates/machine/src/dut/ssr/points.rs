@@ -3,7 +3,7 @@
 use crate::instrument::act::Word;
 use crate::instrument::query::Instrument;
 use crate::rig::point::{
-    AnalogInput, DigitalInput, DigitalOutput, Fixture, MissingPoint, Quantity, Switch,
+    AnalogInput, DigitalInput, DigitalOutput, Fixture, MissingPoint, Quantity, Switch, all_wired,
 };
 use crate::rig::wiring::Wiring;
 use std::sync::Arc;
@@ -48,6 +48,7 @@ named! {
         SmuOut = "smu_out",
         Digitizer = "digitizer",
         PulseSource = "pulse_source",
+        AcSource = "ac_source",
     }
 }
 
@@ -94,7 +95,7 @@ const SWITCHES: [Switch; DigitalOut::COUNT] = {
 pub struct Points {
     inputs: [DigitalInput; DigitalIn::COUNT],
     outputs: [DigitalOutput; DigitalOut::COUNT],
-    instruments: [Instrument; Device::COUNT],
+    instruments: [Option<Instrument>; Device::COUNT],
     /// Input that reads the voltage at the socket.
     pub residual: AnalogInput,
     /// Every digital input, read together.
@@ -102,21 +103,28 @@ pub struct Points {
 }
 
 impl Points {
-    /// Resolves every point and instrument.
+    /// Resolves every point and instrument; only an output for an AC load needs the AC source.
     ///
     /// # Errors
-    /// Fails with the first one that the rig lacks.
-    pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
-        let inputs = all("digital_in", DigitalIn::NAMES, |it| {
+    /// Fails with the first point or instrument that the rig lacks.
+    pub fn resolve(wiring: &Wiring, needs_ac: bool) -> Result<Self, MissingPoint> {
+        let inputs = all_wired("digital_in", DigitalIn::NAMES, |it| {
             wiring.digital_input(it)
         })?;
-        let outputs = all("digital_out", DigitalOut::NAMES, |it| {
+        let outputs = all_wired("digital_out", DigitalOut::NAMES, |it| {
             wiring.digital_output(it)
         })?;
-        let [residual] = all("analog_in", &[RESIDUAL], |it| wiring.analog_input(it))?;
-        let instruments = all("instrument", Device::NAMES, |it| {
-            wiring.instrument_named(it)
-        })?;
+        let [residual] = all_wired("analog_in", &[RESIDUAL], |it| wiring.analog_input(it))?;
+        let mut instruments = [None; Device::COUNT];
+        for device in Device::ALL {
+            instruments[device.index()] = wiring.instrument_named(device.name());
+        }
+        let needed = |it: &&Device| **it != Device::AcSource || needs_ac;
+        let mut all = Device::ALL.iter().filter(needed);
+        if let Some(missing) = all.find(|it| instruments[it.index()].is_none()) {
+            let (section, name) = ("instrument", missing.name());
+            return Err(MissingPoint { section, name });
+        }
         let fixture = Arc::new(Word {
             name: FIXTURE_SIGNAL,
             inputs: inputs.to_vec(),
@@ -143,20 +151,18 @@ impl Points {
     }
 
     /// Returns an instrument.
+    ///
+    /// # Panics
+    /// Panics for an instrument that the rig lacks; resolving has checked all that the recipe needs.
     pub fn instrument(&self, device: Device) -> Instrument {
-        self.instruments[device.index()]
+        let Some(instrument) = self.instruments[device.index()] else {
+            panic!("a test without need for {device} asks for it");
+        };
+        instrument
     }
-}
 
-fn all<T: Copy, const N: usize>(
-    section: &'static str,
-    names: &[&'static str],
-    handle: impl Fn(&str) -> Option<T>,
-) -> Result<[T; N], MissingPoint> {
-    assert_eq!(names.len(), N, "a handle for each name");
-    let mut found = Vec::with_capacity(N);
-    for name in names {
-        found.push(handle(name).ok_or(MissingPoint { section, name })?);
+    /// Returns true when the rig has the instrument.
+    pub fn has(&self, device: Device) -> bool {
+        self.instruments[device.index()].is_some()
     }
-    Ok(std::array::from_fn(|at| found[at]))
 }

@@ -1,11 +1,16 @@
 //! Queries of the test: programs of the profiles with their arguments.
 
-use super::plan::{CurrentRange, LOAD_V, PERIOD_S, PULSE_OHM, Plan};
+use super::ac_plan::{self, AcPlan, Scales};
+use super::plan::{CurrentRange, DcPlan, LOAD_V, PERIOD_S, PULSE_OHM, Plan};
 use super::points::{Device, Points};
 use crate::instrument::query::Query;
 
 /// Channel of the digitizer at the control input.
 pub const CONTROL_CHANNEL: f64 = 1.0;
+/// Channel of the digitizer at the output, behind the divider.
+pub const DIVIDED_CHANNEL: f64 = 2.0;
+/// Channel of the digitizer at the shunt of the load.
+pub const SHUNT_CHANNEL: f64 = 4.0;
 /// Channel of the digitizer at the output, clamped to +-10 V.
 pub const OUTPUT_CHANNEL: f64 = 3.0;
 /// Instant, s, up to which the drop is read.
@@ -22,7 +27,7 @@ pub fn drop_count() -> usize {
     (DRIFT_S / PERIOD_S).round() as usize + 1
 }
 
-fn drop_arguments(plan: &Plan, ampere: f64) -> [(&'static str, f64); 5] {
+fn drop_arguments(plan: &DcPlan, ampere: f64) -> [(&'static str, f64); 5] {
     let (source, meter) = (&plan.drop.source, &plan.drop.meter);
     [
         ("range_a", source.full_scale),
@@ -74,6 +79,11 @@ impl Points {
         self.ranged(device, "source_and_read", level_v, range)
     }
 
+    /// Sets a voltage with its ranges and reads the current twice: briefly, then over its averaging time.
+    pub fn settle_and_read(&self, device: Device, level_v: f64, range: &CurrentRange) -> Query {
+        self.ranged(device, "settle_and_read", level_v, range)
+    }
+
     /// Sets another voltage in the same ranges.
     pub fn level(&self, device: Device, level_v: f64) -> Query {
         self.query(device, "level", &[("level_v", level_v)])
@@ -96,13 +106,13 @@ impl Points {
     }
 
     /// Reads the drop at `ampere`.
-    pub fn drop_at(&self, plan: &Plan, ampere: f64) -> Query {
+    pub fn drop_at(&self, plan: &DcPlan, ampere: f64) -> Query {
         let arguments = drop_arguments(plan, ampere);
         self.query(Device::SmuOut, "drop_at_current", &arguments)
     }
 
     /// Reads the drop [`drop_count`] times from the instant at which `ampere` begins.
-    pub fn drops(&self, plan: &Plan, ampere: f64) -> Query {
+    pub fn drops(&self, plan: &DcPlan, ampere: f64) -> Query {
         let mut arguments = drop_arguments(plan, ampere).to_vec();
         arguments.push(("count", drop_count() as f64));
         self.query(Device::SmuOut, "drops_over_time", &arguments)
@@ -147,6 +157,64 @@ impl Points {
     /// Reads one channel of the record.
     pub fn waveform(&self, plan: &Plan, channel: f64) -> Query {
         let arguments = [("channel", channel), ("points", plan.samples())];
+        self.query(Device::Digitizer, "waveform", &arguments)
+    }
+
+    /// Sets voltage and current limit of the AC source; its output is on afterwards.
+    pub fn mains(&self, plan: &AcPlan, level_v: f64, limit_a: f64) -> Query {
+        let arguments = [
+            ("level_v", level_v),
+            ("frequency_hz", plan.mains_hz),
+            ("limit_a", limit_a),
+        ];
+        self.query(Device::AcSource, "set", &arguments)
+    }
+
+    /// Sets voltage and current limit of the AC source anew.
+    pub fn mains_level(&self, level_v: f64, limit_a: f64) -> Query {
+        let arguments = [("level_v", level_v), ("limit_a", limit_a)];
+        self.query(Device::AcSource, "level", &arguments)
+    }
+
+    /// Measures the voltage of the AC source.
+    pub fn measure_mains(&self) -> Query {
+        self.query(Device::AcSource, "voltage", &[])
+    }
+
+    /// Prepares the pulses of the train.
+    pub fn pulses(&self, plan: &Plan, ac: &AcPlan, input_a: f64) -> Query {
+        let arguments = [
+            ("level_v", plan.control_v + PULSE_OHM * input_a),
+            ("period_s", ac.period_s()),
+            ("width_s", ac.pulse_s()),
+            ("pulses", ac.phases),
+        ];
+        self.query(Device::PulseSource, "train", &arguments)
+    }
+
+    /// Arms the digitizer with the scales of all channels; the record begins [`ac_plan::BEFORE`] before the edge.
+    pub fn capture_all(&self, plan: &Plan, scales: &Scales) -> Query {
+        let arguments = [
+            ("control_v_per_div", plan.control_v / HALF_SCREEN),
+            ("divided_v_per_div", scales.divided_v),
+            ("output_v_per_div", scales.clamped_v),
+            ("shunt_v_per_div", scales.shunt_v),
+            ("s_per_div", scales.record_s / DIVISIONS),
+            ("offset_s", (0.5 - ac_plan::BEFORE) * scales.record_s),
+            ("points", scales.points),
+            ("level_v", plan.turn_on_v.unwrap_or(plan.control_v) / 2.0),
+        ];
+        self.query(Device::Digitizer, "capture_all", &arguments)
+    }
+
+    /// Triggers the digitizer at once, without an edge.
+    pub fn force_trigger(&self) -> Query {
+        self.query(Device::Digitizer, "force_trigger", &[])
+    }
+
+    /// Reads one channel of a record with these scales.
+    pub fn channel(&self, scales: &Scales, channel: f64) -> Query {
+        let arguments = [("channel", channel), ("points", scales.points)];
         self.query(Device::Digitizer, "waveform", &arguments)
     }
 }

@@ -1,6 +1,7 @@
 //! Solid-state relay part of a recipe: the part, and how to measure it.
 
 use super::feasible;
+use super::parameter::Parameter;
 use super::{card, made_up};
 use crate::dut::card::Card;
 use crate::dut::device::Rig;
@@ -28,6 +29,30 @@ pub struct SsrRecipe {
 pub enum Output {
     /// A DC load, with MOSFETs.
     Dc,
+    /// An AC load, with turn-on at the zero crossing of the mains.
+    AcZeroCross,
+    /// An AC load, with turn-on at any phase.
+    AcRandom,
+}
+
+impl Output {
+    /// Returns true when an output of this kind has the characteristic.
+    pub const fn has(self, parameter: Parameter) -> bool {
+        match self {
+            Self::Dc => parameter.is_of_dc(),
+            Self::AcZeroCross => parameter.is_of_ac(true),
+            Self::AcRandom => parameter.is_of_ac(false),
+        }
+    }
+
+    /// Returns the name in recipes.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dc => "dc",
+            Self::AcZeroCross => "ac_zero_cross",
+            Self::AcRandom => "ac_random",
+        }
+    }
 }
 
 /// Data of the part.
@@ -48,6 +73,27 @@ pub struct PartData {
     /// True when the output conducts when reversed.
     #[serde(default)]
     pub body_diode: bool,
+    /// AC parts: voltage of the mains in the test, rms, V.
+    #[serde(default = "mains_v")]
+    pub mains_v: f64,
+    /// AC parts: frequency of the mains in the test, Hz.
+    #[serde(default = "mains_hz")]
+    pub mains_hz: f64,
+    /// AC parts: least load current at which the output works, rms, A.
+    #[serde(default = "least_a")]
+    pub least_a: f64,
+}
+
+fn mains_v() -> f64 {
+    230.0
+}
+
+fn mains_hz() -> f64 {
+    50.0
+}
+
+fn least_a() -> f64 {
+    0.04
 }
 
 /// What is measured of the turn-on and turn-off voltages.
@@ -60,6 +106,10 @@ pub enum Method {
     Bisect,
 }
 
+fn phases() -> u32 {
+    6
+}
+
 /// How the part is measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestPlan {
@@ -67,6 +117,12 @@ pub struct TestPlan {
     pub method: Method,
     /// Width of the interval at which a search ends, mV.
     pub resolution_mv: f64,
+    /// AC parts: number of pulses in the train, each at another phase of the mains.
+    #[serde(default = "phases")]
+    pub phases: u32,
+    /// AC parts: number of parts of a lot of which the sampled characteristics are measured; of all without it.
+    #[serde(default)]
+    pub sampling: Option<u32>,
     /// Longest time constant of the output, ms.
     pub time_constant_ms: f64,
     /// Voltage at the reversed control input, V.

@@ -31,6 +31,8 @@ pub struct Search {
     /// Voltages tried.
     pub tried: u32,
     expected: Option<Expected>,
+    /// Whether the output has conducted at the last voltage.
+    conducted: Option<bool>,
     /// True once the lower and the upper end are voltages that this search has tried.
     tried_ends: [bool; 2],
 }
@@ -43,6 +45,7 @@ impl Search {
             high_v,
             tried: 0,
             expected,
+            conducted: None,
             tried_ends: [false; 2],
         }
     }
@@ -82,6 +85,16 @@ impl Search {
             false => (self.low_v, self.tried_ends[0]) = (volts, true),
         }
         self.tried += 1;
+        self.conducted = Some(conducts);
+    }
+
+    /// Returns true when the last step has left the output as each step must find it: blocked for a rising search,
+    /// conducting for a falling one.
+    pub fn is_ready(&self, direction: Direction) -> bool {
+        match direction {
+            Direction::Rising => self.conducted == Some(false),
+            Direction::Falling => self.conducted == Some(true),
+        }
     }
 }
 

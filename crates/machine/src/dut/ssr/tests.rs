@@ -1,9 +1,12 @@
 //! Recipes that a rig for solid-state relays cannot carry out.
 #![allow(clippy::unwrap_used)]
 
-use super::bench::{RIG, profiles, recipe, wiring};
+pub mod bench;
+pub mod line_bench;
+
 use crate::dut::device::Rig;
 use crate::dut::em_relay::settings::ReferenceSet;
+use bench::{RIG, profiles, recipe, wiring};
 
 /// Returns what hinders the recipe with changes, on a rig with changes, with profiles whose texts `profile` changes.
 fn faults(
@@ -20,6 +23,7 @@ fn faults(
         reference: None,
         accuracy: &accuracy,
         reference_parts: &ReferenceSet::default(),
+        certificate: None,
     };
     let all = recipe(recipe_changes).infeasible(&rig);
     all.iter().map(ToString::to_string).collect()

@@ -53,6 +53,26 @@ fn the_pusher_retracts_while_the_jaws_close() {
 }
 
 #[test]
+fn probes_rise_beside_a_pusher_that_left_its_sensor() {
+    let leaving = |to_mm| {
+        rest()
+            .clamped()
+            .with(Pusher, moving(0.0, to_mm))
+            .parts(|p| p.nest = true)
+    };
+    passes(Motion::to(ProbeLift, 12.0), &leaving(57.0));
+    let early = blocked(Motion::to(ProbeLift, 12.0), &leaving(60.0));
+    assert_eq!(early.blocker, "pusher_keel");
+    assert!(guard().probes_rise_beside_pusher(jzc_22f()));
+    let mut settings = scene_settings();
+    for actuator in &mut settings.actuator {
+        actuator.sensor_off_mm = 0.0;
+    }
+    let mut unproven = Guard::build(&settings).unwrap();
+    assert!(!unproven.probes_rise_beside_pusher(jzc_22f()));
+}
+
+#[test]
 fn the_probes_rise_to_the_clamped_part() {
     passes(
         Motion::to(ProbeLift, 12.0),

@@ -1,6 +1,7 @@
 //! Every part is in exactly one place, and the places add up.
 
 use crate::dut::em_relay::bins;
+use crate::handling::ledger::BatchSocket;
 use crate::handling::ledger::{Ledger, PartRole};
 use crate::handling::place::{NestId, Place};
 use crate::rig::bin::Bin;
@@ -137,7 +138,7 @@ fn filled(sockets: u16) -> Ledger {
     let mut ledger = Ledger::default();
     for socket in 0..sockets {
         let reference = (socket == 0).then(|| "G-12-1".to_owned());
-        ledger.fill_socket(socket, reference);
+        ledger.fill_socket(BatchSocket { batch: 1, socket }, reference);
     }
     ledger
 }
@@ -168,7 +169,13 @@ fn a_part_missing_from_its_socket_is_lost() {
     assert!(ledger.lose(Place::Socket(1)) && !ledger.lose(Place::Socket(1)));
     assert_eq!((ledger.lost, ledger.inside()), (1, 2));
     assert!(ledger.balances());
-    ledger.fill_socket(1, None);
+    ledger.fill_socket(
+        BatchSocket {
+            batch: 1,
+            socket: 1,
+        },
+        None,
+    );
     assert_eq!(ledger.part(Place::Socket(1)).map(|it| it.ordinal), Some(4));
 }
 
@@ -181,5 +188,11 @@ fn no_part_leaves_its_socket_unjudged() {
 #[test]
 #[should_panic(expected = "a second part in the socket")]
 fn a_socket_takes_no_second_part() {
-    filled(2).fill_socket(1, None);
+    filled(2).fill_socket(
+        BatchSocket {
+            batch: 1,
+            socket: 1,
+        },
+        None,
+    );
 }

@@ -1,10 +1,10 @@
 //! The known position of an actuator.
 
 use super::MockRig;
-use super::mock_rig::{LENGTH_MM, TIMEOUT};
+use super::mock_rig::{LENGTH_MM, SENSOR_OFF_MM, TIMEOUT};
 use crate::dut::em_relay::bins;
 use crate::guard::{Actuator, PartPlaces, Position};
-use crate::handling::mechanism::{HandEnd, SENSOR_AGE};
+use crate::handling::mechanism::{DEBOUNCE, HandEnd, SENSOR_AGE};
 use crate::handling::moves::Move;
 use crate::handling::trouble::Trouble;
 use crate::rig::axis::AxisStation;
@@ -247,6 +247,41 @@ fn stale_sensors_leave_the_whole_stroke() {
             to_mm: length,
         };
         assert_eq!(position(&mock, actuator), whole, "{actuator:?}");
+    }
+}
+
+#[test]
+fn a_debounced_sensor_shows_that_the_pusher_left() {
+    let mut mock = MockRig::at_rest();
+    mock.show_end(Move::PusherExtend);
+    mock.scan();
+    mock.mechanism
+        .driven(Move::PusherRetract, mock.now, &mock.image);
+    let to = |to_mm| Position::Between {
+        from_mm: 0.0,
+        to_mm,
+    };
+    let debounce_ms = DEBOUNCE.0 / 1000;
+    // Sensor of the extended pusher, and how long the reading lasts.
+    let readings = [
+        (true, debounce_ms, 60.0),
+        (false, debounce_ms - 1, 60.0),
+        (true, 1, 60.0),
+        (false, debounce_ms - 1, 60.0),
+        (false, 1, 60.0 - SENSOR_OFF_MM),
+        (true, 1, 60.0),
+    ];
+    for (number, (is_on, ms, high_mm)) in readings.into_iter().enumerate() {
+        mock.set(DigitalIn::PusherExtended, is_on);
+        mock.scan();
+        mock.mechanism.update(mock.now, &mock.image);
+        mock.after(ms);
+        mock.scan();
+        mock.mechanism.update(mock.now, &mock.image);
+        let found = position(&mock, Actuator::Pusher);
+        assert_eq!(found, to(high_mm), "reading {number}");
+        let left = mock.mechanism.pusher_left_the_probes(mock.now);
+        assert_eq!(left, high_mm < 60.0, "reading {number}");
     }
 }
 

@@ -15,7 +15,7 @@ use crate::rig::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Poin
 use crate::rig::stroke::ActuatorKey;
 use crate::rig::wiring::{ModuleId, Wiring};
 use crate::station::trouble::Alarm;
-use dcon::{Bits, Command, Reply};
+use dcon::Command;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 use units::{RigTime, Span};
@@ -119,30 +119,9 @@ impl MockRig {
 
     /// Reads every digital module.
     pub fn scan(&mut self) {
-        let inputs = self.wiring.digital_inputs();
-        let modules: BTreeSet<ModuleId> = inputs
-            .map(|(_, point)| self.wiring.digital_in(point).module)
-            .collect();
-        for module in modules {
-            self.scan_module(module);
-        }
-    }
-
-    fn scan_module(&mut self, module: ModuleId) {
-        let mut word = 0;
-        for (_, point) in self.wiring.digital_inputs() {
-            let terminal = self.wiring.digital_in(point);
-            if terminal.module == module && self.on.contains(&point) != terminal.active_low {
-                word |= terminal.bit();
-            }
-        }
-        let [first, second] = u16::to_be_bytes(word);
-        let reply = Reply::Bits(Bits { first, second });
-        let line = self.wiring.module(module).line;
-        let command = self.wiring.poll(module);
-        self.image
-            .accept(line, &command, &reply, "", self.now)
-            .unwrap();
+        super::scan(&self.wiring, &mut self.image, self.now, |point| {
+            self.on.contains(&point)
+        });
     }
 
     /// Lets time pass and reads everything.
@@ -277,15 +256,20 @@ fn opposite(movement: Move) -> &'static [(DigitalIn, bool)] {
 /// Lengths of the strokes in the order of the actuators; the axis has a point table instead.
 pub const LENGTH_MM: [f64; 8] = [12.0, 60.0, 8.0, 8.0, 12.0, 0.0, 40.0, 6.0];
 
+/// Distance from an end at which a sensor of the pusher goes off, mm.
+pub const SENSOR_OFF_MM: f64 = 3.0;
+
 /// Makes a mechanism without motions.
 pub fn mechanism(wiring: &Wiring) -> Mechanism {
     assert_eq!(Actuator::ALL.len(), LENGTH_MM.len());
     let strokes = Strokes {
         length_mm: LENGTH_MM,
+        sensor_off_mm: [0.0, SENSOR_OFF_MM, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        probes_beside_pusher: true,
         axis_mm: wiring
-            .axis
+            .axis()
             .stations()
-            .map(|at| (at, wiring.axis.point(at).x_mm))
+            .map(|at| (at, wiring.axis().point(at).x_mm))
             .collect(),
     };
     let part = PartSize {

@@ -3,6 +3,7 @@
 use super::{MockRig, context, device};
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::{Bin, Reason, Verdict};
+use crate::handling::mechanism::DEBOUNCE;
 use crate::handling::moves::Move;
 use crate::handling::nest::{self, NestContext, NestState, TestTerms};
 use crate::handling::output::NestJob;
@@ -108,6 +109,29 @@ fn pins() -> NestJob {
 
 fn silent() -> Message {
     Message::detail("unread", "measure 05: silent")
+}
+
+#[test]
+fn probes_rise_before_the_leaving_pusher_is_back() {
+    let mut nest = Nest::loaded(None);
+    let mock = &mut nest.mock;
+    mock.mechanism
+        .driven(Move::PusherRetract, mock.now, &mock.image);
+    let state = nest.step(NestState::Empty, None);
+    nest.mock.carried_out(Move::ClampClose);
+    let state = nest.step(state, None);
+    assert!(nest.motions().is_empty(), "the pusher is at the nest");
+    let mock = &mut nest.mock;
+    mock.set(DigitalIn::PusherExtended, false);
+    mock.scan();
+    mock.mechanism.update(mock.now, &mock.image);
+    mock.after(DEBOUNCE.0 / 1000);
+    mock.scan();
+    mock.mechanism.update(mock.now, &mock.image);
+    let state = nest.step(state, None);
+    assert_eq!(nest.motions(), [Move::ProbesUp]);
+    nest.mock.carried_out(Move::ProbesUp);
+    assert!(matches!(nest.step(state, None), NestState::Testing(_)));
 }
 
 #[test]

@@ -13,14 +13,14 @@ use units::RigTime;
 const HOME: Move = Move::AxisTo(AxisStation::Nest);
 
 fn step(sort: Sort, mock: &mut MockRig, test_running: bool) -> Sort {
-    let table = mock.wiring.axis.clone();
+    let table = mock.wiring.axis().clone();
     let mut turn = mock.turn();
     confirm(&mut turn, &table);
     sort.step(&mut turn, &table, test_running)
 }
 
 fn beam(mock: &mut MockRig, bin: Bin, count: u16) {
-    let point = mock.wiring.axis.beam(bin);
+    let point = mock.wiring.axis().beam(bin);
     mock.beam(point, count);
 }
 
@@ -110,7 +110,7 @@ fn the_fingers_surround_the_part_once_z_is_down() {
 
 #[test]
 fn an_unjudged_part_is_carried_to_retest() {
-    for bin in MockRig::at_rest().wiring.axis.bins() {
+    for bin in MockRig::at_rest().wiring.axis().bins() {
         let mut mock = loaded(bin);
         assert_eq!(step(Sort::Loaded, &mut mock, false), Sort::Carrying(bin));
         let station = AxisStation::Bin(bin);
@@ -161,7 +161,7 @@ fn a_release_needs_a_fresh_count_of_the_beam() {
     let since = mock.now;
     let sort = step(Sort::OverBin(bins::TIME, since), &mut mock, false);
     assert_eq!(sort, Sort::OverBin(bins::TIME, since), "read too early");
-    let watched = mock.wiring.axis.beam(bins::TIME);
+    let watched = mock.wiring.axis().beam(bins::TIME);
     assert_eq!(mock.output.rig.beam, Some(watched));
     mock.after(1);
     beam(&mut mock, bins::TIME, 5);

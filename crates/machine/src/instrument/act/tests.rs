@@ -70,6 +70,14 @@ fn every_bus_act_becomes_one_job() {
             }),
             Job::Read(vec![gate]),
         ),
+        (
+            Act::Below {
+                point: points.analog(AnalogIn::CoilVoltageFine),
+                amount: 9.0,
+                within: Span(0),
+            },
+            Job::Read(vec![coil]),
+        ),
         (Act::Read(Read::Restarts), Job::Restarts),
         (Act::Mask(masked.clone()), Job::Mask(masked)),
         (
@@ -240,6 +248,36 @@ fn until_polls_until_the_point_is_active() {
         (RunnerState::Done, &[true][..])
     );
     assert_eq!(runner.spent().ramp, Span::ms(30));
+}
+
+#[test]
+fn below_reads_until_a_value_is_small_or_old_enough() {
+    let point = AnalogIn::CoilCurrentFine;
+    // Readings 5 ms apart from the mark on, V at the terminal; how many the act takes; the last one that it keeps.
+    for (volts, taken) in [
+        (vec![0.1, 8.0], 1),
+        (vec![8.0, 8.0, -0.1, 0.1], 3),
+        (vec![8.0, 8.0, 8.0, 8.0, 0.1], 4),
+    ] {
+        let mut mock = read_once();
+        let below = Act::Below {
+            point: mock.points.analog(point),
+            amount: 0.001,
+            within: Span::ms(15),
+        };
+        let mut runner = Runner::new(vec![Act::Mark, below], mock.now);
+        let mut state = runner.step(mock.now, None, &mock.image);
+        let mut reads = 0;
+        while matches!(state, RunnerState::Job(_)) {
+            mock.volts(point, volts[reads]);
+            reads += 1;
+            state = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
+            mock.after(5);
+        }
+        assert_eq!((state, reads), (RunnerState::Done, taken), "{volts:?}");
+        let kept = runner.readings.analog(mock.points.analog(point));
+        assert_eq!(kept.count(), 1, "{volts:?}");
+    }
 }
 
 /// Polls every `poll_ms`, so that the second poll shows the latch, and starts the ramp `sent_ms` later; returns the

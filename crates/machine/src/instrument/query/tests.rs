@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::instrument::act::{Act, Job, JobDone, Runner, RunnerState};
+use crate::instrument::conversion::Conversion;
 use crate::instrument::trace::MAX_NUMBERS;
 use crate::rig::image::Image;
 use crate::rig::instruments::Profiles;
@@ -50,9 +51,8 @@ fn carried_out(image: &Image, each: &[(Query, Vec<f64>)]) -> Runner {
         waveform: None,
     });
     let done = JobDone {
-        at: RigTime(900),
-        trouble: None,
         delivered: delivered.collect(),
+        ..JobDone::new(RigTime(900), None)
     };
     let state = runner.step(RigTime(1000), Some(&done), image);
     assert_eq!(state, RunnerState::Done);
@@ -132,4 +132,48 @@ fn a_block_and_its_preamble_are_a_waveform() {
 fn a_block_without_preamble_is_refused() {
     let replies = [Reply::Block(vec![1, 2])];
     assert!(Delivered::of(Dialect::Rigol, &replies).is_err());
+}
+
+#[test]
+fn a_conversion_gets_the_waveforms_of_its_stage() {
+    let image = image();
+    let query = query(&image, "meter", "current_at_level");
+    let sum = Conversion::new(|all| all.iter().map(|it| it.volts.len()).sum::<usize>());
+    let acts = vec![Act::Query(vec![query]), Act::Convert(sum.clone())];
+    let mut runner = Runner::new(acts, RigTime(0));
+    runner.step(RigTime(0), None, &image);
+    let waveform = Arc::new(Waveform {
+        start_s: 0.0,
+        step_s: 1e-6,
+        volts: vec![0.5; 7],
+    });
+    let done = JobDone {
+        delivered: vec![Delivered {
+            waveform: Some(Arc::clone(&waveform)),
+            ..Delivered::default()
+        }],
+        ..JobDone::new(RigTime(900), None)
+    };
+    let asked = runner.step(RigTime(1000), Some(&done), &image);
+    let waveforms = vec![waveform];
+    assert_eq!(
+        asked,
+        RunnerState::Job(Job::Convert(sum.clone(), waveforms.clone()))
+    );
+    let done = JobDone {
+        converted: Some(sum.run(&waveforms)),
+        ..JobDone::new(RigTime(1000), None)
+    };
+    assert_eq!(
+        runner.step(RigTime(1001), Some(&done), &image),
+        RunnerState::Done
+    );
+    let converted: Vec<_> = runner
+        .readings
+        .converted
+        .iter()
+        .map(|it| it.get())
+        .collect();
+    assert_eq!(converted, [Some(&7_usize)]);
+    assert_eq!(runner.readings.converted[0].get::<f64>(), None);
 }

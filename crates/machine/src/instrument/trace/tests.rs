@@ -42,3 +42,29 @@ fn the_trace_keeps_its_first_samples() {
     trace.append(much);
     assert_eq!(trace.samples().len(), MAX_SAMPLES);
 }
+
+#[test]
+fn a_waveform_leaves_the_ends_of_its_pieces() {
+    let mut trace = Trace::default();
+    let signal = Signal::channel(crate::rig::instruments::Instrument::at(0), 3).unwrap();
+    assert_eq!((signal.name, signal.unit), ("channel_3", "V"));
+    let mut volts = vec![0.0; 10 * WAVE_PIECES];
+    (volts[14], volts[17]) = (5.0, -5.0);
+    let wave = Waveform {
+        start_s: 0.0,
+        step_s: 1e-6,
+        volts,
+    };
+    trace.wave(signal, &wave, RigTime(10_000));
+    let looks: Vec<(u64, f64)> = trace.samples()[2..4]
+        .iter()
+        .map(|look| (look.at.0, look.value))
+        .collect();
+    assert_eq!(looks, [(8_514, 5.0), (8_517, -5.0)]);
+    assert_eq!(trace.samples().len(), 2 * WAVE_PIECES);
+    for _ in 0..100 {
+        trace.wave(signal, &wave, RigTime(20_000));
+    }
+    trace.word("board", &[true], RigTime(20_001));
+    assert_eq!(trace.samples().len(), MAX_WAVE_SAMPLES + 1);
+}

@@ -134,7 +134,7 @@ fn plan(count: Option<u64>) -> Plan {
 
 fn of_plan(plan: Plan, mock: &MockRig) -> Station {
     let mechanism = mechanism_of(&mock.wiring);
-    Station::new(plan, device(), mock.wiring.axis.clone(), mechanism)
+    Station::new(plan, device(), mock.wiring.axis().clone(), mechanism)
 }
 
 impl Machine {
@@ -390,7 +390,7 @@ impl Machine {
                 let AxisStation::Bin(bin) = self.axis else {
                     panic!("a part was let go over {:?}", self.axis);
                 };
-                let beam = self.mock.wiring.axis.beam(bin);
+                let beam = self.mock.wiring.axis().beam(bin);
                 *self.beams.entry(beam).or_default() += 1;
             }
             _ => {}
@@ -425,7 +425,7 @@ impl Machine {
                 }
             }
             Job::Read(points) => points.iter().for_each(|point| self.read(*point)),
-            Job::Level(_) | Job::Restarts | Job::Mask(_) | Job::Query(_) => {}
+            Job::Level(_) | Job::Restarts | Job::Mask(_) | Job::Query(_) | Job::Convert(..) => {}
         }
         JobDone::new(self.mock.now, None)
     }

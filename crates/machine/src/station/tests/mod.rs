@@ -8,6 +8,7 @@ mod orders;
 mod packml;
 mod panel;
 mod prompts;
+mod rack;
 mod run;
 mod safety;
 mod trouble;

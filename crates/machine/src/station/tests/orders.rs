@@ -350,6 +350,7 @@ fn every_refusal_has_a_text_in_both_languages() {
         Refused::Unhomed(State::Execute),
         Refused::StillMoving,
         Refused::NoMotionWaits,
+        Refused::NothingMoves,
         Refused::CauseRemains(Box::new(AlarmCode::DoorOpen.into())),
         Refused::CauseRemains(Box::new(Alarm::bin_full(Bin::PASS))),
         Refused::NoSuchAlarm,

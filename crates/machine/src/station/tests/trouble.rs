@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::Reason;
+use crate::dut::batch::BatchTrouble;
 use crate::dut::promise::{Broken, Promise};
 use crate::handling::Place;
 use crate::handling::moves::Move;
@@ -93,8 +94,11 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::promise_broken(&broken(Promise::ClosureScatter)),
         Alarm::promise_broken(&broken(Promise::PartMinusTrack)),
         Alarm::calibration_cut_off("coil_ai"),
+        Alarm::from(Trouble::CoolsSlowly(Span::ms(3_600_000))),
+        Alarm::from(BatchTrouble::SocketsOpen("3, 7".into())),
+        Alarm::from(BatchTrouble::LagUnexpected(96, 39)),
     ];
-    let bins: Vec<Bin> = wiring().axis.bins().collect();
+    let bins: Vec<Bin> = wiring().axis().bins().collect();
     let to_bins = bins.iter().map(|bin| Move::AxisTo(AxisStation::Bin(*bin)));
     let moved = JOGS.into_iter().chain(to_bins).flat_map(of_a_move);
     let known: Vec<Alarm> = moved

@@ -1,6 +1,5 @@
 // Calibration: factors with uncertainty and due date, and the last readings of reference parts.
 
-const FACTOR_UNITS = {1: "", ohm: "Ω", "mohm/V": "mΩ/V", us: "µs"};
 let instruments = null;
 
 async function enterCalibration() {
@@ -20,7 +19,7 @@ async function enterCalibration() {
 }
 
 function calibrationTables(it) {
-  const title = make("h2", it.nominal_v + " V · " + word("c-made") + " " + clock(it.made));
+  const title = make("h2", (it.nominal_v === null ? word("c-rack") : it.nominal_v + " V") + " · " + word("c-made") + " " + clock(it.made));
   const due = make("p", (it.overdue ? "▲ " + word("c-overdue") + " " : word("c-due") + " ") + clock(it.due) +
     (it.verified ? "" : " · ▲ " + word("c-failed")), it.overdue || !it.verified ? "due bad" : "due");
   const table = make("table", undefined, "list"), body = make("tbody"), head = make("thead"), names = make("tr");
@@ -31,7 +30,7 @@ function calibrationTables(it) {
   }));
   head.append(names);
   body.append(...it.factors.map((one) => row(wordOr("factor-" + one.name, one.name), ...measured(one.value, one.uncertainty),
-    FACTOR_UNITS[one.unit] ?? one.unit)));
+    unitText(one.unit))));
   table.append(head, body);
   return [title, due, table];
 }

@@ -2,11 +2,25 @@
 
 const shareText = (bad, all) => (all ? (100 * bad / all).toFixed(3) + "\u202f%" : NONE);
 
+const msText = (ms) => (ms === null ? NONE : ms.toFixed(2));
+
+// Shows the SCPI instruments; a rig without them shows no table.
+function showInstruments() {
+  at("instruments_shown").hidden = !view.instruments.length;
+  at("instruments").replaceChildren(...view.instruments.map((it) => {
+    const failures = Object.entries(it.failures);
+    const text = failures.map(([code, count]) => wordOr("failure-" + code, code) + " " + integerText(count)).join(comma());
+    const element = row(it.name, it.profile, it.link, it.identity ?? NONE, integerText(it.programs), msText(it.p50_ms), msText(it.p99_ms), text);
+    if (failures.length) element.className = "bad";
+    return element;
+  }));
+}
+
 function showBus() {
   at("bus").replaceChildren(...view.lines.flatMap((line) => line.modules.map((it) => {
     const bad = it.time_outs + it.checksum_errors + it.other_errors;
-    const element = row(wordOr("line-" + line.name, line.name), it.address, integerText(it.transactions), it.p50_ms === null ? NONE : it.p50_ms.toFixed(2),
-      it.p99_ms === null ? NONE : it.p99_ms.toFixed(2), integerText(it.time_outs), integerText(it.checksum_errors),
+    const element = row(wordOr("line-" + line.name, line.name), it.address, integerText(it.transactions), msText(it.p50_ms),
+      msText(it.p99_ms), integerText(it.time_outs), integerText(it.checksum_errors),
       integerText(it.other_errors), integerText(it.refusals), integerText(it.resets), shareText(bad, it.transactions));
     if (bad * 1000 > it.transactions) element.className = "bad";
     return element;
@@ -41,6 +55,7 @@ function showHost() {
 
 PAGES.bus = {show: () => {
   showBus();
+  showInstruments();
   showHost();
 }};
 
@@ -100,5 +115,14 @@ function showIo() {
     row(word("io-probe_contact"), contact === null ? NONE : contact.toFixed(2) + "\u202fΩ"));
 }
 
+// The link to plans for tooling says how far the plan under way is.
+async function showTooling() {
+  at("to_tooling").textContent = word("page-tooling");
+  const reply = await fetch("/api/plans/list?limit=1").catch(() => null);
+  // A rig that never ran has no history.
+  const [plan] = reply?.ok ? await reply.json() : [];
+  if (plan && !plan.end) at("to_tooling").textContent += " \u00b7 " + word("tooling-under_way") + " " + plan.done + " / " + plan.steps;
+}
+
 makeJogs();
-PAGES.io = {show: showIo};
+PAGES.io = {show: showIo, enter: showTooling};

@@ -3,7 +3,7 @@
 const WORDS = JSON.parse(document.getElementById("words").textContent);
 // Characteristics of every kind of device, with unit and names; the bins that some kind of device names.
 const {characteristics: CHARACTERISTICS, bins: BINS} = JSON.parse(document.getElementById("kinds").textContent);
-const UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C", uA: "µA", us: "µs"};
+const UNITS = {1: "", ohm: "Ω", mOhm: "mΩ", "mohm/V": "mΩ/V", C: "°C", uA: "µA", us: "µs"};
 const VERDICTS = ["pass", "fail", "void"];
 const NONE = "–";
 
@@ -31,7 +31,7 @@ const comma = () => (language === "zh" ? "\uff0c" : ", ");
 const bracketed = (text) => (language === "zh" ? "\uff08" + text + "\uff09" : " (" + text + ")");
 // Returns the Chinese or the English member of an answer; rows of older versions may have the English one only.
 const said = (answer, key) => (language === "zh" && answer[key + "_zh"]) || answer[key];
-const unitText = (unit) => UNITS[unit] || unit || "";
+const unitText = (unit) => UNITS[unit] ?? unit ?? "";
 
 // --- characteristics ---
 

@@ -8,7 +8,7 @@ function openPage() {
   const shown = Object.hasOwn(PAGES, current) ? current : "fetching";
   for (const page of document.querySelectorAll("main")) page.hidden = page.dataset.page !== shown;
   for (const tab of document.querySelectorAll("nav a")) {
-    const open = tab.hash === "#" + (["part", "rejudge"].includes(current) ? "history" : current);
+    const open = tab.hash === "#" + ({part: "history", rejudge: "history", tooling: "io"}[current] ?? current);
     tab.toggleAttribute("aria-current", open);
     if (open) tab.setAttribute("aria-current", "page");
   }

@@ -21,7 +21,8 @@ async function readTrace() {
     const only = at("trace_line").value;
     fillSelect(at("trace_line"), [["", word("any")], ...lines.map((it) => [it.line, lineText(it.line)])]);
     const rows = lines.filter((it) => !only || it.line === only).flatMap((it) => it.entries.map((entry) => [it.line, entry]));
-    rows.sort((a, b) => b[1].at_us - a[1].at_us);
+    // Newest first, and of messages at one instant the later one.
+    rows.reverse().sort((a, b) => b[1].at_us - a[1].at_us);
     at("trace").replaceChildren(...rows.slice(0, 200).map(([line, it]) =>
       row((it.at_us / 1e6).toFixed(6), lineText(line), it.way, it.text, meaningText(it))));
     at("trace_trouble").textContent = "";

@@ -131,6 +131,22 @@ impl Smu {
         }
     }
 
+    /// Checks whether range and limit of the source stay within its power: 105 mA above the 20 V range, 21 V above the
+    /// 100 mA range.
+    fn is_within_power(&self) -> bool {
+        let settings = &self.body.settings;
+        match settings.choice("source") {
+            "VOLTage" => {
+                let range = range_of(settings, "volts", "volt_range", "volt_range_auto", &VOLTS);
+                range <= 20.0 || settings.number("limit_a") <= 0.105
+            }
+            _ => {
+                let range = range_of(settings, "amps", "amp_range", "amp_range_auto", &AMPS);
+                range <= 0.1 || settings.number("limit_v") <= 21.0
+            }
+        }
+    }
+
     fn ranges_itself(&self) -> bool {
         self.sense("amp_sense_auto", "volt_sense_auto", "ohm_sense_auto") != 0.0
     }
@@ -164,8 +180,8 @@ impl Smu {
         } else {
             let range = range_of(settings, "amps", "amp_range", "amp_range_auto", &AMPS);
             let accuracy = Accuracy {
-                gain: 3e-4,
-                offset: 6e-4 * range,
+                gain: 6.7e-4,
+                offset: 9e-4 * range,
                 noise: 0.0,
             };
             Drive::Current {
@@ -231,17 +247,21 @@ impl Smu {
                 let accuracy = Accuracy {
                     gain,
                     offset,
-                    noise: 0.05 * offset * quiet,
+                    noise: 0.075 * offset * quiet,
                 };
                 within(errors.apply(2, accuracy, mean.amps), range)
             }
             "VOLTage" => {
                 let range = select(volts, &VOLTS);
-                let offset = (5e-5 * range).max(2e-4);
+                let offset = match range {
+                    ..=0.2 => 2e-4,
+                    ..=2.0 => 3e-4,
+                    _ => 5e-5 * range,
+                };
                 let accuracy = Accuracy {
                     gain: 1.5e-4,
                     offset,
-                    noise: 0.02 * offset * quiet,
+                    noise: 0.025 * offset * quiet,
                 };
                 within(errors.apply(3, accuracy, volts), range)
             }
@@ -295,6 +315,10 @@ impl Instrument for Smu {
     }
 
     fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure> {
+        if !self.is_within_power() {
+            self.body.settings.set(changed.key, changed.before);
+            return Err(Failure::SETTINGS_CONFLICT);
+        }
         match changed.key {
             key @ ("volt_range" | "amp_range" | "amp_sense" | "volt_sense" | "ohm_sense") => {
                 let is_auto = |it: &&Setting| it.0.strip_suffix("_auto") == Some(key);

@@ -23,7 +23,6 @@ fn each_reading_takes_the_transactions_of_its_points() {
     for (read, sent) in [
         (Read::Board, vec!["@08"]),
         (Read::Coil, vec!["#01"]),
-        (Read::Current(AnalogIn::CoilCurrent), vec!["#011"]),
         (Read::Drop, vec!["#090"]),
         (Read::Gates, vec!["#030", "#031"]),
         (Read::Gate, vec!["#030"]),

@@ -79,6 +79,7 @@ fn faults_on(
         reference: Some(&board.reference),
         accuracy,
         reference_parts: &toml::from_str(golden).unwrap(),
+        certificate: None,
     };
     faults(relay, limits, &rig)
 }

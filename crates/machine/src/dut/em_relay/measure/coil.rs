@@ -106,15 +106,21 @@ pub(super) fn acts_off(
         Suppression::Diode => FREED_BY_DIODE,
     };
     acts.extend(select_diode(context, false));
+    let released = board.armature.is_released();
     if board.armature != Armature::Rested {
-        acts.extend((!board.armature.is_released()).then_some(Act::Mark));
+        acts.extend((!released).then_some(Act::Mark));
         acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
         acts.extend(rest(context, &mut board.supply));
     }
-    acts.extend([
-        Act::ConvertSinceMark(freed + context.fresh(CHANNELS)),
-        Act::Read(Read::Current(context.relay.test.coil_channels.current())),
-    ]);
+    let within = freed + context.fresh(CHANNELS);
+    // A conversion from before the switch-off shows a driven coil. After a stage that did not end as planned it may come
+    // from before the drive, so the stage waits for one that began later.
+    acts.extend((!released).then_some(Act::ConvertSinceMark(within)));
+    acts.push(Act::Below {
+        channel: context.relay.test.coil_channels.current(),
+        amount: OFF_CURRENT_A,
+        within,
+    });
     board.armature = Armature::Rested;
     (acts, board)
 }

@@ -195,8 +195,9 @@ impl Test {
         self.stages.push_front(Stage::TimedOperate);
     }
 
-    /// Plans, once per test, the stages to repeat: those with a result inside the guard band; in a thorough test all;
-    /// under calibration also the fine ramps of a reference part, whose scatter shows the scatter of operations.
+    /// Plans, once per test, the stages to repeat. These are the stages with a result inside the guard band, or in a
+    /// thorough test all of them. Calibration also repeats the fine ramps of a reference part, to find the scatter of
+    /// operations.
     fn add_slow_repeats(&mut self) {
         if self.slow_done || self.state.record.stopped() {
             return;

@@ -1,9 +1,10 @@
 //! Waiting times of a test for the armature, in multiples of its operate time.
 //!
-//! A relay that is late on a step (mass, drag, slow pull) also swings longer after an approach and leaves its rest
-//! position later. Every wait for a free armature is therefore a multiple of the operate time at nominal voltage that
-//! the test measures before any ramp. Of two thousand simulated relays, after [`super::OFF`] without drive, none
-//! operates early when the approach ends 45 mV before the threshold, and seven heavy ones do at 30 mV.
+//! A relay that operates late on a step (mass, drag, slow pull) also swings longer after an approach and leaves its
+//! rest position later. Every wait for a free armature is therefore a multiple of the operate time at nominal voltage,
+//! which the test measures before any ramp. A simulation of two thousand relays confirms the approach: after
+//! [`super::OFF`] without drive, none operates early when the approach ends 45 mV before the threshold; at 30 mV, seven
+//! heavy ones do.
 
 use super::TestRecord;
 use crate::dut::em_relay::Parameter;

@@ -24,11 +24,11 @@ pub enum Stage {
     OperateCoarse,
     /// Fine ramp from just below the coarse estimate; a later attempt searches a wider interval.
     OperateFine(u8),
-    /// Step to nominal voltage: counter gate 0 times the operation, gate 1 the bounce; then the stage measures the
-    /// resistance of the closed NO contact.
+    /// Steps the coil to nominal voltage. Counter gate 0 measures the operate time, gate 1 the bounce. Then the stage
+    /// measures the resistance of the closed NO contact.
     TimedOperate,
-    /// Drive off: counter gate 0 times the release, gate 1 the bounce; then the stage measures the resistance of the
-    /// closed NC contact.
+    /// Switches the coil off. Counter gate 0 measures the release time, gate 1 the bounce. Then the stage measures the
+    /// resistance of the closed NC contact.
     TimedRelease,
     /// Coarse falling ramp from a sealed armature.
     ReleaseCoarse,

@@ -102,6 +102,22 @@ fn an_edge_between_two_samples_stays_within_one_interval() {
 }
 
 #[test]
+fn a_jump_lies_in_the_middle_of_its_interval() {
+    let errors = (0..40_u32).map(|part| Record {
+        rise_s: CLEAN.rise_s + CLEAN.step_s * (f64::from(part) * 0.618).fract(),
+        fall_s: CLEAN.fall_s + CLEAN.step_s * (f64::from(part) * 0.377).fract(),
+        on_s: CLEAN.on_s + CLEAN.step_s * (f64::from(part) * 0.271).fract(),
+        off_s: CLEAN.off_s + CLEAN.step_s * (f64::from(part) * 0.839).fract(),
+        edge_s: 1e-9,
+        ..CLEAN
+    });
+    let errors: Vec<f64> = errors.flat_map(|it| it.errors()).map(|it| it.0).collect();
+    let mean_s = errors.iter().sum::<f64>() / errors.len() as f64;
+    assert!(mean_s.abs() < 0.1 * CLEAN.step_s, "{mean_s:e}");
+    assert!(errors.iter().all(|it| it.abs() <= 1.01 * CLEAN.step_s));
+}
+
+#[test]
 fn uncertainties_cover_noise_and_converter_steps() {
     for (bits, noise_v) in [(8, 0.0), (8, 0.03), (12, 0.0), (12, 0.01), (12, 0.05)] {
         let records = (0..100_u64).map(|seed| Record {

@@ -19,17 +19,36 @@ pub enum Position {
     Pulsed,
     /// Output at its source, four wires.
     Direct,
+    /// The line feeds the output; the SMU drives the control input.
+    Line,
+    /// The line feeds the output; the pulse source drives the control input.
+    LinePulsed,
+    /// The loop feeds the output with its rated current.
+    Loop,
 }
 
 impl Position {
     /// Returns the outputs that are on.
     pub const fn outputs(self) -> &'static [DigitalOut] {
-        use DigitalOut::{BleedOpen, DriveSelect, SmuLoad, SmuToOutput};
+        use DigitalOut::{
+            BleedOpen, DriveSelect, LineContactor, LoopContactor, SmuLoad, SmuToOutput,
+        };
         match self {
             Self::Isolated => &[],
             Self::Load => &[BleedOpen, SmuToOutput, SmuLoad],
             Self::Pulsed => &[BleedOpen, SmuToOutput, SmuLoad, DriveSelect],
             Self::Direct => &[BleedOpen, SmuToOutput],
+            Self::Line => &[BleedOpen, LineContactor],
+            Self::LinePulsed => &[BleedOpen, LineContactor, DriveSelect],
+            Self::Loop => &[BleedOpen, LoopContactor],
+        }
+    }
+
+    /// Returns true when one of the contactors is closed.
+    pub const fn is_on_mains(self) -> bool {
+        match self {
+            Self::Line | Self::LinePulsed | Self::Loop => true,
+            Self::Isolated | Self::Load | Self::Pulsed | Self::Direct => false,
         }
     }
 }

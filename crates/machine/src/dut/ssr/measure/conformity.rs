@@ -5,12 +5,13 @@
 //! proven exceeded.
 
 use super::board::{self, Position};
+use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
 use super::stage::Stage;
 use super::state::{Next, State};
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::parameter::Parameter;
-use crate::dut::ssr::plan::{LOAD_OHM, LOAD_V, Plan};
+use crate::dut::ssr::plan::{DcPlan, LOAD_OHM, LOAD_V, Plan};
 use crate::dut::ssr::points::{Device, Points};
 use crate::gauge::{Judgement, Side};
 use crate::instrument::act::Act;
@@ -18,17 +19,18 @@ use units::Span;
 
 /// Share of the load current from which the output counts as conducting.
 const ON: f64 = 0.9;
-/// Share up to which it counts as blocking.
-const OFF: f64 = 0.1;
 
 /// Returns true when the output conducts this current of the load circuit, A.
 pub fn conducts(ampere: f64) -> bool {
     ampere >= ON * LOAD_V / LOAD_OHM
 }
 
-/// Returns true when the output blocks.
-fn blocks(ampere: f64) -> bool {
-    ampere <= OFF * LOAD_V / LOAD_OHM
+/// Returns true when the output blocks: the load current is at most the limit of the leakage plus the error of the
+/// meter.
+fn blocks(ampere: f64, plan: &Plan, dc: &DcPlan) -> bool {
+    let meter = &plan.load.meter;
+    let error_a = meter.offset + 3.0 * meter.noise_over(plan.load.periods);
+    ampere.abs() <= dc.blocked_a + error_a
 }
 
 /// Returns the acts that bring the output to its source behind the load, with the input at its nominal voltage.
@@ -65,18 +67,19 @@ pub fn block_acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
 pub fn conclude_blocks(
     state: &mut State,
     plan: &Plan,
+    dc: &DcPlan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
     let [on_a, off_a] = given.singles(Device::SmuOut)?;
     if !conducts(on_a) {
         state.record.stop(Finding::NeverOn);
-    } else if blocks(off_a) {
+    } else if blocks(off_a, plan, dc) {
         let proven = (Parameter::TurnOffVoltage, Judgement::Pass);
         state.proven.extend(plan.turn_off_v.map(|_| proven));
     } else if plan.turn_off_v.is_none() {
         state.record.stop(Finding::StuckOn);
     } else {
-        return Ok(Next::Insert(Stage::BlocksBeyond));
+        return Ok(Next::Insert(Stage::Dc(DcStage::BlocksBeyond)));
     }
     Ok(Next::Planned)
 }
@@ -95,11 +98,16 @@ pub fn block_beyond_acts(plan: &Plan, points: &Points) -> Vec<Act> {
 }
 
 /// Concludes the second try of the turn-off.
-pub fn conclude_blocks_beyond(state: &mut State, given: &Given) -> Result<Next, NotDelivered> {
+pub fn conclude_blocks_beyond(
+    state: &mut State,
+    plan: &Plan,
+    dc: &DcPlan,
+    given: &Given,
+) -> Result<Next, NotDelivered> {
     let [beyond_a, without_a] = given.singles(Device::SmuOut)?;
-    if !blocks(without_a) {
+    if !blocks(without_a, plan, dc) {
         state.record.stop(Finding::StuckOn);
-    } else if blocks(beyond_a) {
+    } else if blocks(beyond_a, plan, dc) {
         let judgement = Judgement::Conditional(Side::Low);
         state.proven.push((Parameter::TurnOffVoltage, judgement));
     } else {
@@ -121,7 +129,7 @@ pub fn conduct_acts(plan: &Plan, points: &Points, shift_v: f64) -> Vec<Act> {
 pub fn conclude_conducts(state: &mut State, given: &Given) -> Result<Next, NotDelivered> {
     let [on_a] = given.singles(Device::SmuOut)?;
     if !conducts(on_a) {
-        return Ok(Next::Insert(Stage::ConductsBeyond));
+        return Ok(Next::Insert(Stage::Dc(DcStage::ConductsBeyond)));
     }
     let proven = (Parameter::TurnOnVoltage, Judgement::Pass);
     state.proven.push(proven);

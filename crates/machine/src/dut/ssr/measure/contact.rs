@@ -29,8 +29,8 @@ fn look(points: &Points, on: &[DigitalOut]) -> [Act; 3] {
 }
 
 /// Returns the acts of the Kelvin test. The sources go off first, in case the test before could not prove it.
-pub fn acts(points: &Points) -> Vec<Act> {
-    let mut acts = discharge::off_acts(points);
+pub fn acts(state: &mut State, points: &Points) -> Vec<Act> {
+    let mut acts = discharge::off_acts(state, points);
     acts.extend(look(points, &[DigitalOut::KelvinTest]));
     acts
 }
@@ -63,7 +63,8 @@ pub fn conclude_short(record: &mut TestRecord, plan: &Plan, given: &Given) -> Ne
     let point = given.points.input(DigitalIn::ShortSeen);
     let mut seen = given.readings.states(point);
     let (forward, reversed) = (seen.next() == Some(true), seen.next() == Some(true));
-    if forward || (reversed && !plan.body_diode) {
+    let has_diode = plan.dc().is_some_and(|dc| dc.body_diode);
+    if forward || (reversed && !has_diode) {
         record.stop(Finding::Shorted);
     }
     Next::Planned

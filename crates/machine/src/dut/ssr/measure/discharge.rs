@@ -2,6 +2,7 @@
 
 use super::board::Position;
 use super::given::Given;
+use super::line::Level;
 use super::stage::Stage;
 use super::state::{Next, State};
 use crate::dut::ssr::points::{Device, DigitalIn, Points};
@@ -10,19 +11,32 @@ use crate::rig::point::Point;
 use std::sync::Arc;
 use units::Span;
 
-/// Longest time until the detector sees the socket discharged.
+/// Inputs that show a safe socket: its voltage detector, and the mirror contacts of both contactors.
+const SAFE: [DigitalIn; 3] = [
+    DigitalIn::OutputSafe,
+    DigitalIn::LineOpen,
+    DigitalIn::LoopOpen,
+];
+/// Longest time until these inputs show a safe socket.
 const WITHIN: Span = Span::ms(500);
 /// Times that the socket is looked at before it counts as live: the first conversion may be older than the discharge.
 const LOOKS: u32 = 3;
 /// Time of two conversions of the slowest converter, which has all its channels enabled.
 const CONVERSIONS: Span = Span::ms(220);
+/// Time of one conversion of a converter with one channel in its fast mode.
+const LATEST: Span = Span::ms(14);
+/// Time of two conversions of a converter with one channel in its fast mode.
+const FRESH: Span = Span::ms(30);
 /// Voltage at the socket below which the jaws may open, V.
 pub const SAFE_V: f64 = 30.0;
 
-/// Returns the acts that take the sources off.
-pub fn off_acts(points: &Points) -> Vec<Act> {
-    let sources = [Device::SmuIn, Device::SmuOut, Device::PulseSource];
-    vec![Act::Query(sources.map(|it| points.off(it)).to_vec())]
+/// Returns the acts that take the sources off. The fixture keeps the pulse source away but for its stage.
+pub fn off_acts(state: &mut State, points: &Points) -> Vec<Act> {
+    let mut queries = [Device::SmuIn, Device::SmuOut]
+        .map(|it| points.off(it))
+        .to_vec();
+    queries.extend(state.end_pulses(points));
+    vec![Act::Query(queries)]
 }
 
 /// Returns the acts that disconnect the socket, discharge it and look at its voltage in two ways; from the second look on
@@ -30,12 +44,18 @@ pub fn off_acts(points: &Points) -> Vec<Act> {
 pub fn acts(state: &mut State, points: &Points) -> Vec<Act> {
     state.position = Position::Isolated;
     let is_first = state.looks == 0;
-    let fresh = if is_first { Span(0) } else { CONVERSIONS };
+    // The mains moves within a conversion: the first look of an AC part waits for a conversion of its own, that of a DC
+    // part for the end of one, which saw the socket discharged for most of its time.
+    let fresh = match (is_first, state.level) {
+        (true, Level::Unknown) => LATEST,
+        (true, Level::Line | Level::Loop | Level::LoopProven) => FRESH,
+        (false, _) => CONVERSIONS,
+    };
     state.looks += 1;
     vec![
         Act::Set(points.outputs(&[])),
-        Act::Until {
-            point: points.input(DigitalIn::OutputSafe),
+        Act::Agree {
+            expected: SAFE.map(|it| (points.input(it), true)).to_vec(),
             word: Arc::clone(&points.fixture),
             within: WITHIN,
         },
@@ -46,13 +66,11 @@ pub fn acts(state: &mut State, points: &Points) -> Vec<Act> {
 
 /// Concludes whether the socket is safe: detector and converter must both say so, and both contactors must be open.
 pub fn conclude(state: &mut State, given: &Given) -> Next {
-    let detected = given.readings.seen.last() == Some(&true);
     let residual = given.readings.analog(given.points.residual).last();
     let residual_v = residual.and_then(|it| it.good());
-    let is_on = |point| given.readings.states(given.points.input(point)).last() == Some(true);
-    let is_cut_off = is_on(DigitalIn::LineOpen) && is_on(DigitalIn::LoopOpen);
+    let is_detected = SAFE.iter().all(|it| given.is_on(*it));
     let is_low = residual_v.is_some_and(|volts| volts.abs() < SAFE_V);
-    state.is_discharged = detected && is_cut_off && is_low;
+    state.is_discharged = is_detected && is_low;
     match state.is_discharged || state.looks >= LOOKS {
         true => Next::Planned,
         false => Next::Insert(Stage::Discharge),

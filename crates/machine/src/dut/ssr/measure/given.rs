@@ -1,8 +1,9 @@
 //! What a stage has read, with the points of the rig.
 
-use crate::dut::ssr::points::{Device, Points};
+use crate::dut::ssr::points::{Device, DigitalIn, Points};
 use crate::instrument::query::Waveform;
 use crate::instrument::readings::Readings;
+use std::any::Any;
 use std::sync::Arc;
 
 /// An instrument has delivered other values than its programs return.
@@ -27,15 +28,22 @@ impl<'a> Given<'a> {
         &self,
         device: Device,
     ) -> Result<[&'a [f64]; COUNT], NotDelivered> {
+        let all = self.lists(device, COUNT)?;
+        all.try_into().map_err(|_| NotDelivered(device))
+    }
+
+    /// Returns, for each program of an instrument that has delivered numbers, those numbers, in order.
+    ///
+    /// # Errors
+    /// Fails unless there are `count` programs, and every number is finite.
+    pub fn lists(&self, device: Device, count: usize) -> Result<Vec<&'a [f64]>, NotDelivered> {
         let all = self.readings.delivered(self.points.instrument(device));
         let all = all.map(|it| it.numbers.as_slice());
         let all: Vec<&[f64]> = all.filter(|it| !it.is_empty()).collect();
-        let finite = all
-            .iter()
-            .all(|it| it.iter().all(|number| number.is_finite()));
-        match <[&[f64]; COUNT]>::try_from(all) {
-            Ok(numbers) if finite => Ok(numbers),
-            Ok(_) | Err(_) => Err(NotDelivered(device)),
+        let mut numbers = all.iter().flat_map(|it| it.iter());
+        match all.len() == count && numbers.all(|it| it.is_finite()) {
+            true => Ok(all),
+            false => Err(NotDelivered(device)),
         }
     }
 
@@ -68,11 +76,27 @@ impl<'a> Given<'a> {
     /// Returns the waveforms of the digitizer, in order.
     ///
     /// # Errors
-    /// Fails unless there are two.
-    pub fn waveforms(&self) -> Result<[Arc<Waveform>; 2], NotDelivered> {
+    /// Fails unless there are `COUNT`.
+    pub fn waveforms<const COUNT: usize>(&self) -> Result<[Arc<Waveform>; COUNT], NotDelivered> {
         let device = Device::Digitizer;
         let all = self.readings.delivered(self.points.instrument(device));
         let all: Vec<Arc<Waveform>> = all.filter_map(|it| it.waveform.clone()).collect();
         all.try_into().map_err(|_| NotDelivered(device))
+    }
+
+    /// Returns the last state of an input of the fixture.
+    pub fn is_on(&self, point: DigitalIn) -> bool {
+        self.readings.states(self.points.input(point)).last() == Some(true)
+    }
+
+    /// Returns the result of the last conversion, of two waveforms.
+    ///
+    /// # Errors
+    /// Fails when the digitizer has delivered another number of waveforms, or when the conversion has another type.
+    pub fn converted<T: Any + Copy>(&self) -> Result<T, NotDelivered> {
+        let [_control, _output] = self.waveforms()?;
+        let last = self.readings.converted.last();
+        let value = last.and_then(|it| it.get().copied());
+        value.ok_or(NotDelivered(Device::Digitizer))
     }
 }

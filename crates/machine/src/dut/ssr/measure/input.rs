@@ -2,6 +2,7 @@
 
 use super::board::{self, Position, RELAY};
 use super::given::{Given, NotDelivered};
+use super::line;
 use super::stage::Stage;
 use super::state::{Next, State};
 use crate::dut::ssr::Finding;
@@ -23,11 +24,14 @@ const ONE_WAY: f64 = 0.1;
 pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
     let mut acts = board::change(points, state.position, Position::Isolated);
     state.position = Position::Isolated;
-    acts.push(Act::Query(vec![
+    let mut queries = vec![
         points.source_and_read(Device::SmuIn, plan.control_v, &plan.input),
         points.source_and_read(Device::SmuIn, -plan.reverse_v, &plan.reverse),
         points.off(Device::SmuIn),
-    ]));
+    ];
+    // Meanwhile the AC source, still disconnected from the part, goes to its level.
+    queries.extend(plan.ac().map(|ac| line::line_level(state, ac, points)));
+    acts.push(Act::Query(queries));
     acts
 }
 
@@ -39,9 +43,9 @@ pub fn conclude(state: &mut State, plan: &Plan, given: &Given) -> Result<Next, N
     let (reverse_a, reverse_moved) = Given::settled(device, reversed)?;
     state.suspected = if forward_a < OPEN_A {
         Some(Finding::InputOpen)
-    } else if plan.input.is_limited(forward_a) {
+    } else if plan.input.is_limited(forward_a) && plan.bounds(Parameter::InputCurrent) {
         Some(Finding::InputShorted)
-    } else if plan.reverse.is_limited(reverse_a) {
+    } else if plan.reverse.is_limited(reverse_a) && plan.bounds(Parameter::ReverseCurrent) {
         Some(Finding::InputConductsReversed)
     } else {
         None
@@ -53,15 +57,14 @@ pub fn conclude(state: &mut State, plan: &Plan, given: &Given) -> Result<Next, N
     let budget = current(&plan.input, forward_a, forward_moved, 1e-3);
     let budget = applied(budget, &plan.input, plan.control_v, input_ma);
     let reversed = current(&plan.reverse, reverse_a, reverse_moved, 1e-6);
-    state.found([
-        (Parameter::InputCurrent, input_ma, Unit::Milliampere, budget),
-        (
-            Parameter::ReverseCurrent,
-            reverse_ua,
-            Unit::Microampere,
-            reversed,
-        ),
-    ]);
+    // A current at the end of its range is no result.
+    if !plan.input.is_limited(forward_a) {
+        state.found([(Parameter::InputCurrent, input_ma, Unit::Milliampere, budget)]);
+    }
+    if !plan.reverse.is_limited(reverse_a) {
+        let unit = Unit::Microampere;
+        state.found([(Parameter::ReverseCurrent, reverse_ua, unit, reversed)]);
+    }
     Ok(Next::Planned)
 }
 

@@ -13,24 +13,27 @@
 mod board;
 mod conformity;
 mod contact;
+mod dc_stage;
 mod discharge;
 mod given;
 mod input;
 mod leakage;
+pub(super) mod line;
 mod resistance;
 mod stage;
 mod state;
 mod threshold;
 mod timing;
 
-pub use stage::Stage;
+pub use stage::{Label, Stage};
 pub use state::State;
 
 use super::device::Device;
 use super::parameter::Parameter;
+use super::plan::OutputPlan;
 use crate::dut::device::TestOrder;
 use crate::dut::procedure::{Progress, TestProcedure};
-use crate::dut::record::{Stop, TestRecord};
+use crate::dut::record::{Own, Stop, TestRecord};
 use crate::dut::{Characteristic, Kind, Verdict};
 use crate::gauge::Judgement;
 use crate::instrument::act::{JobDone, Runner, RunnerState};
@@ -40,6 +43,12 @@ use state::Next;
 use std::collections::VecDeque;
 use texts::Message;
 use units::RigTime;
+
+/// Keys under which rows say whether the part obeys at the limits of its thresholds, by characteristic.
+const CONFORMS: [(Parameter, &str); 2] = [
+    (Parameter::TurnOnVoltage, "v_on_conforms"),
+    (Parameter::TurnOffVoltage, "v_off_conforms"),
+];
 
 /// A test under way.
 #[derive(Debug)]
@@ -59,10 +68,19 @@ pub struct Test {
 impl Test {
     /// Begins with the pins; the probes are up.
     pub fn begin(device: Device, order: &TestOrder, now: RigTime) -> Self {
-        let mut stages: VecDeque<Stage> = stage::order(&device.plan).into();
+        let references = device.fixture.references.filter(|it| it.hold(now));
+        let open = device.fixture.open.filter(|it| it.holds(now));
+        let is_referenced = match device.plan.output {
+            OutputPlan::Dc(_) => open.is_some(),
+            OutputPlan::Ac(_) => references.is_some(),
+        };
+        let mut stages: VecDeque<Stage> = stage::order(&device.plan, is_referenced).into();
         stages.extend([Stage::SourcesOff, Stage::Discharge]);
         let mut state = State {
             learned: device.learned,
+            references,
+            open,
+            is_no_sample: device.plan.sampling.is_some_and(|it| device.judged >= it),
             ..State::default()
         };
         let stage = stages.pop_front().unwrap_or(Stage::Discharge);
@@ -116,7 +134,9 @@ impl Test {
         self.book(now);
         let readings = std::mem::take(&mut self.runner.readings);
         let (plan, points) = (&self.device.plan, &self.device.points);
-        let next = self.state.conclude(self.stage, plan, points, &readings);
+        let next = self
+            .state
+            .conclude(self.stage, plan, (points, now), &readings);
         if self.stage.ends() {
             if let Next::Insert(stage) = next {
                 self.stages.push_front(stage);
@@ -149,6 +169,23 @@ impl Test {
         };
         self.repeats_left = Some(left.saturating_sub(1));
         left > 0
+    }
+}
+
+impl Test {
+    /// Returns for each threshold whether the part obeys at its limit. Absent is a threshold within the guard band, and
+    /// one that the test has not reached.
+    fn conforms(&self) -> Vec<(&'static str, bool)> {
+        let found = self.why_stopped().and_then(Stop::proven);
+        let obeys = |of: Parameter| match self.state.proof(of) {
+            Some(Judgement::Pass) => Some(true),
+            Some(Judgement::Fail(_)) => Some(false),
+            Some(Judgement::Conditional(_) | Judgement::Void) => None,
+            None => (found == Some(of.into())).then_some(false),
+        };
+        let all = CONFORMS.into_iter();
+        all.filter_map(|(of, key)| Some((key, obeys(of)?)))
+            .collect()
     }
 }
 
@@ -207,35 +244,36 @@ impl TestProcedure for Test {
         all.map(|(of, judgement)| (of.into(), judgement)).collect()
     }
 
-    /// Returns the verdict; a voltage without limit and without search is not expected.
+    /// Returns the verdict. A characteristic without a limit fails no part, whether measured or not.
     fn verdict(&self) -> Verdict {
-        let plan = &self.device.plan;
-        let is_measured = |of: &Parameter| match of {
-            Parameter::TurnOnVoltage => plan.searches || plan.turn_on_v.is_some(),
-            Parameter::TurnOffVoltage => plan.searches || plan.turn_off_v.is_some(),
-            Parameter::InputCurrent
-            | Parameter::ReverseCurrent
-            | Parameter::TurnOnTime
-            | Parameter::TurnOffTime
-            | Parameter::Drop
-            | Parameter::OnResistance
-            | Parameter::LeakageCold
-            | Parameter::LeakageHot
-            | Parameter::Drift => true,
-        };
-        let expected = Parameter::ALL.into_iter().filter(is_measured);
-        let expected: Vec<Characteristic> = expected.map(Into::into).collect();
+        let judged = self
+            .device
+            .plan
+            .judged
+            .iter()
+            .filter(|it| self.state.measures(**it));
+        let expected: Vec<Characteristic> = judged.map(|it| (*it).into()).collect();
         Verdict::after(self.why_stopped(), &expected, self.judgements())
     }
 
     fn record(&self) -> TestRecord {
-        self.state.record.clone()
+        let mut record = self.state.record.clone();
+        record.own = Own::Ssr(self.state.fixture());
+        record.conforms = self.conforms();
+        record
     }
 
     fn take_record(&mut self) -> TestRecord {
-        std::mem::take(&mut self.state.record)
+        let conforms = self.conforms();
+        let mut record = std::mem::take(&mut self.state.record);
+        record.conforms = conforms;
+        record.own = Own::Ssr(self.state.fixture());
+        record
     }
 }
 
 #[cfg(test)]
 mod tests;
+
+#[cfg(test)]
+mod line_tests;

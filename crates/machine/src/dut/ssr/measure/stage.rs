@@ -1,8 +1,9 @@
 //! Stages of the test in their order, and the characteristics that each measures.
 
+use super::dc_stage::{self, DcStage};
+use super::line::stage::{self as ac_stage, AcStage};
 use crate::dut::ssr::parameter::Parameter;
-use crate::dut::ssr::plan::Plan;
-use crate::dut::ssr::search::Direction;
+use crate::dut::ssr::plan::{OutputPlan, Plan};
 
 /// Stages of the test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,100 +16,121 @@ pub enum Stage {
     Input,
     /// Looks for the LED at the pins of the output, after the input has shown none.
     Turned,
-    /// Leakage before the output has conducted.
-    ColdLeakage,
-    /// Short check once more, after a leakage without bounds: the control has turned the output on for ever.
-    StuckShort,
-    /// The output must block at the turn-off voltage.
-    Blocks,
-    /// The same a guard band beyond the limit, and without control.
-    BlocksBeyond,
-    /// The output must conduct at the turn-on voltage.
-    Conducts,
-    /// The same a guard band beyond the limit.
-    ConductsBeyond,
-    /// One step of a search.
-    Threshold(Direction),
-    /// Times of one control pulse.
-    Timing,
-    /// Resistance, drop and drift.
-    Resistance,
-    /// Leakage after conduction.
-    HotLeakage,
-    /// Sources off.
+    /// A stage that only parts for a DC load pass.
+    Dc(DcStage),
+    /// A stage that only parts for an AC load pass.
+    Ac(AcStage),
+    /// All sources off.
     SourcesOff,
-    /// Everything disconnected, the socket discharged.
+    /// Everything disconnected and the socket discharged.
     Discharge,
 }
 
-impl Stage {
-    /// Every stage.
-    pub const ALL: [Self; 17] = [
-        Self::Contact,
+/// Name of a stage in views; several stages share one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Label {
+    /// Contact of the pins.
+    Pins,
+    /// Short check.
+    Short,
+    /// Control input.
+    Input,
+    /// References of the fixture.
+    References,
+    /// Leakage before conduction.
+    Leakage,
+    /// Conformity of the turn-off voltage.
+    Blocks,
+    /// Conformity of the turn-on voltage.
+    Conducts,
+    /// Searches for thresholds.
+    Threshold,
+    /// Turn-on and turn-off time.
+    Timing,
+    /// Resistance of a DC part.
+    OnResistance,
+    /// Drop of an AC part.
+    OnState,
+    /// Leakage after conduction.
+    LeakageHot,
+    /// End of the test.
+    Discharge,
+}
+
+impl Label {
+    /// Every label.
+    pub const ALL: [Self; 13] = [
+        Self::Pins,
         Self::Short,
         Self::Input,
-        Self::Turned,
-        Self::ColdLeakage,
-        Self::StuckShort,
+        Self::References,
+        Self::Leakage,
         Self::Blocks,
-        Self::BlocksBeyond,
         Self::Conducts,
-        Self::ConductsBeyond,
-        Self::Threshold(Direction::Rising),
-        Self::Threshold(Direction::Falling),
+        Self::Threshold,
         Self::Timing,
-        Self::Resistance,
-        Self::HotLeakage,
-        Self::SourcesOff,
+        Self::OnResistance,
+        Self::OnState,
+        Self::LeakageHot,
         Self::Discharge,
     ];
-    /// Names of the stages in views, each once.
-    pub const NAMES: [&'static str; 11] = [
-        "Pins",
-        "Short",
-        "Input",
-        "Leakage",
-        "Blocks",
-        "Conducts",
-        "Threshold",
-        "Timing",
-        "OnResistance",
-        "LeakageHot",
-        "Discharge",
-    ];
+
+    /// Returns the name in views, and the key under which the record keeps the time of the stage.
+    const fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Pins => ("Pins", "pins"),
+            Self::Short => ("Short", "short"),
+            Self::Input => ("Input", "input"),
+            Self::References => ("References", "references"),
+            Self::Leakage => ("Leakage", "leakage"),
+            Self::Blocks => ("Blocks", "blocks"),
+            Self::Conducts => ("Conducts", "conducts"),
+            Self::Threshold => ("Threshold", "threshold"),
+            Self::Timing => ("Timing", "timing"),
+            Self::OnResistance => ("OnResistance", "resistance"),
+            Self::OnState => ("OnState", "on_state"),
+            Self::LeakageHot => ("LeakageHot", "leakage_hot"),
+            Self::Discharge => ("Discharge", "discharge"),
+        }
+    }
 
     /// Returns the name in views.
     pub const fn name(self) -> &'static str {
+        self.names().0
+    }
+}
+
+impl Stage {
+    /// Returns every stage of parts with this output, those after a failure included.
+    pub fn all(output: &OutputPlan) -> Vec<Self> {
+        let own: Vec<Self> = match output {
+            OutputPlan::Dc(_) => DcStage::ALL.map(Self::Dc).into(),
+            OutputPlan::Ac(_) => AcStage::ALL.map(Self::Ac).into(),
+        };
+        let first = [Self::Contact, Self::Short, Self::Input, Self::Turned];
+        let last = [Self::SourcesOff, Self::Discharge];
+        first.into_iter().chain(own).chain(last).collect()
+    }
+
+    const fn label(self) -> Label {
         match self {
-            Self::Contact => "Pins",
-            Self::Short | Self::StuckShort => "Short",
-            Self::Input | Self::Turned => "Input",
-            Self::ColdLeakage => "Leakage",
-            Self::Blocks | Self::BlocksBeyond => "Blocks",
-            Self::Conducts | Self::ConductsBeyond => "Conducts",
-            Self::Threshold(_) => "Threshold",
-            Self::Timing => "Timing",
-            Self::Resistance => "OnResistance",
-            Self::HotLeakage => "LeakageHot",
-            Self::SourcesOff | Self::Discharge => "Discharge",
+            Self::Contact => Label::Pins,
+            Self::Short => Label::Short,
+            Self::Input | Self::Turned => Label::Input,
+            Self::Dc(stage) => stage.label(),
+            Self::Ac(stage) => stage.label(),
+            Self::SourcesOff | Self::Discharge => Label::Discharge,
         }
+    }
+
+    /// Returns the name in views.
+    pub const fn name(self) -> &'static str {
+        self.label().names().0
     }
 
     /// Returns the key under which the record keeps the time of the stage.
     pub const fn key(self) -> &'static str {
-        match self {
-            Self::Contact => "pins",
-            Self::Short | Self::StuckShort => "short",
-            Self::Input | Self::Turned => "input",
-            Self::ColdLeakage => "leakage",
-            Self::Blocks | Self::BlocksBeyond => "blocks",
-            Self::Conducts | Self::ConductsBeyond => "conducts",
-            Self::Threshold(_) => "threshold",
-            Self::Timing => "timing",
-            Self::Resistance => "resistance",
-            Self::HotLeakage => "leakage_hot",
-            Self::SourcesOff | Self::Discharge => "discharge",
-        }
+        self.label().names().1
     }
 
     /// Returns true for the stages with which every test ends.
@@ -118,44 +140,22 @@ impl Stage {
 
     /// Returns the characteristics that a repetition of the stage measures again.
     pub const fn measures(self) -> &'static [Parameter] {
-        use Parameter::{
-            Drift, Drop, InputCurrent, LeakageCold, LeakageHot, OnResistance, ReverseCurrent,
-            TurnOffTime, TurnOnTime,
-        };
         match self {
-            Self::Input => &[InputCurrent, ReverseCurrent],
-            Self::ColdLeakage => &[LeakageCold],
-            Self::Timing => &[TurnOnTime, TurnOffTime],
-            Self::Resistance => &[Drop, OnResistance, Drift],
-            Self::HotLeakage => &[LeakageHot],
-            Self::Contact
-            | Self::Short
-            | Self::StuckShort
-            | Self::Turned
-            | Self::Blocks
-            | Self::BlocksBeyond
-            | Self::Conducts
-            | Self::ConductsBeyond
-            | Self::Threshold(_)
-            | Self::SourcesOff
-            | Self::Discharge => &[],
+            Self::Input => &[Parameter::InputCurrent, Parameter::ReverseCurrent],
+            Self::Dc(stage) => stage.measures(),
+            Self::Ac(stage) => stage.measures(),
+            Self::Contact | Self::Short | Self::Turned | Self::SourcesOff | Self::Discharge => &[],
         }
     }
 }
 
-/// Returns the stages that a good part passes, safe first, without those that end the test.
-pub fn order(plan: &Plan) -> Vec<Stage> {
-    let conducts = plan.turn_on_v.map(|_| Stage::Conducts);
-    let searches = [Direction::Rising, Direction::Falling].map(Stage::Threshold);
-    let searches = searches.into_iter().filter(|_| plan.searches);
-    let first = [
-        Stage::Contact,
-        Stage::Short,
-        Stage::Input,
-        Stage::ColdLeakage,
-        Stage::Blocks,
-    ];
-    let last = [Stage::Timing, Stage::Resistance, Stage::HotLeakage];
-    let all = first.into_iter().chain(conducts).chain(searches);
-    all.chain(last).collect()
+/// Returns the stages of a good part, without those that end the test, the safe ones first. The line is connected only
+/// after the output is known to block 5 V and the input to be sound.
+pub fn order(plan: &Plan, is_referenced: bool) -> Vec<Stage> {
+    let own = match &plan.output {
+        OutputPlan::Dc(_) => dc_stage::order(plan, is_referenced),
+        OutputPlan::Ac(_) => ac_stage::order(plan, is_referenced),
+    };
+    let safe = [Stage::Contact, Stage::Short, Stage::Input];
+    safe.into_iter().chain(own).collect()
 }

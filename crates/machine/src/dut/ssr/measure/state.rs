@@ -2,21 +2,27 @@
 //! concludes from what they have read.
 
 use super::board::Position;
+use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
+use super::line::stage::AcStage;
+use super::line::{self, Level, conforms, looped, references, train};
 use super::stage::Stage;
 use super::{conformity, contact, discharge, input, leakage, resistance, threshold, timing};
 use crate::dut::record::TestRecord;
 use crate::dut::ssr::Finding;
+use crate::dut::ssr::ac_plan::AcPlan;
 use crate::dut::ssr::learned::Learned;
 use crate::dut::ssr::parameter::Parameter;
-use crate::dut::ssr::plan::Plan;
-use crate::dut::ssr::points::Points;
+use crate::dut::ssr::plan::{DcPlan, OutputPlan, Plan};
+use crate::dut::ssr::points::{Device, Points};
+use crate::dut::ssr::references::{Fixture, OpenFixture, References};
 use crate::dut::ssr::search::Search;
 use crate::gauge::{Budget, Judgement, Reading};
 use crate::instrument::act::Act;
+use crate::instrument::query::Query;
 use crate::instrument::readings::Readings;
 use crate::rig::sample::Sample;
-use units::Unit;
+use units::{RigTime, Unit};
 
 /// State of a test between its stages.
 #[derive(Debug, Default)]
@@ -25,6 +31,12 @@ pub struct State {
     pub record: TestRecord,
     /// Connections of the fixture.
     pub position: Position,
+    /// Voltage to which the AC source is set.
+    pub level: Level,
+    /// Corrections by the references of the fixture; `None` while there are none.
+    pub references: Option<References>,
+    /// Readings of the references so far, while they are measured.
+    pub shown: references::Shown,
     /// Finding that holds unless the next stage finds another cause.
     pub suspected: Option<Finding>,
     /// Thresholds of earlier parts.
@@ -35,10 +47,28 @@ pub struct State {
     pub turn_on_v: Option<f64>,
     /// What the conformity tests have proven about limits.
     pub proven: Vec<(Parameter, Judgement)>,
+    /// True for a part whose sampled characteristics are left out.
+    pub is_no_sample: bool,
+    /// What the pulse source does.
+    pub pulses: Pulses,
+    /// What the open fixture has shown.
+    pub open: Option<OpenFixture>,
     /// Number of looks at the socket at the end of the test.
     pub looks: u32,
     /// True once the socket is proven to be discharged and below 30 V.
     pub is_discharged: bool,
+}
+
+/// What the pulse source does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Pulses {
+    /// Its output is off: no program of this test has switched it on.
+    #[default]
+    Off,
+    /// It holds the pulses of this test, and waits for its trigger.
+    Ready,
+    /// It has been triggered.
+    Sent,
 }
 
 /// What a stage demands after its conclusion.
@@ -53,26 +83,94 @@ pub enum Next {
 /// A value of a characteristic with its unit and budget.
 pub type Found = (Parameter, f64, Unit, Budget);
 
+/// Returns the plan of a DC output. Only stages of DC parts call this.
+///
+/// # Panics
+/// Panics for the plan of an AC output.
+fn dc_of(plan: &Plan) -> &DcPlan {
+    match &plan.output {
+        OutputPlan::Dc(dc) => dc,
+        OutputPlan::Ac(_) => panic!("a stage of DC parts with the plan of an AC part"),
+    }
+}
+
+/// Returns the plan of an AC output. Only stages of AC parts call this.
+///
+/// # Panics
+/// Panics for the plan of a DC output.
+fn ac_of(plan: &Plan) -> &AcPlan {
+    match &plan.output {
+        OutputPlan::Ac(ac) => ac,
+        OutputPlan::Dc(_) => panic!("a stage of AC parts with the plan of a DC part"),
+    }
+}
+
 impl State {
+    /// Returns the query that prepares the pulses at the control input; none when they are prepared already. The pulse
+    /// source begins only at its trigger.
+    pub fn prepare_pulses(&mut self, plan: &Plan, points: &Points) -> Option<Query> {
+        if std::mem::replace(&mut self.pulses, Pulses::Ready) == Pulses::Ready {
+            return None;
+        }
+        let input_ma = self.record.result(Parameter::InputCurrent);
+        let input_a = input_ma.map_or(0.0, |it| it.value / 1e3);
+        Some(match &plan.output {
+            OutputPlan::Dc(_) => points.train(plan, input_a),
+            OutputPlan::Ac(ac) => points.pulses(plan, ac, input_a),
+        })
+    }
+
+    /// Returns the query that switches the pulse source off; none when it is off.
+    pub fn end_pulses(&mut self, points: &Points) -> Option<Query> {
+        let before = std::mem::take(&mut self.pulses);
+        (before != Pulses::Off).then(|| points.off(Device::PulseSource))
+    }
+
     /// Returns the acts of a stage, and takes over the position in which they leave the fixture.
     pub fn acts(&mut self, stage: Stage, plan: &Plan, points: &Points) -> Vec<Act> {
         match stage {
-            Stage::Contact => contact::acts(points),
+            Stage::Contact => contact::acts(self, points),
             Stage::Short => contact::short_acts(points),
-            Stage::StuckShort => contact::stuck_acts(self, points),
             Stage::Input => input::acts(self, plan, points),
             Stage::Turned => input::turned_acts(self, plan, points),
-            Stage::ColdLeakage => leakage::acts(self, &plan.leakage_cold, plan, points),
-            Stage::HotLeakage => leakage::acts(self, &plan.leakage_hot, plan, points),
-            Stage::Blocks => conformity::block_acts(self, plan, points),
-            Stage::BlocksBeyond => conformity::block_beyond_acts(plan, points),
-            Stage::Conducts => conformity::conduct_acts(plan, points, -plan.guard_v),
-            Stage::ConductsBeyond => conformity::conduct_acts(plan, points, plan.guard_v),
-            Stage::Threshold(direction) => threshold::acts(self, direction, plan, points),
-            Stage::Timing => timing::acts(self, plan, points),
-            Stage::Resistance => resistance::acts(self, plan, points),
-            Stage::SourcesOff => discharge::off_acts(points),
+            Stage::Dc(stage) => self.dc_acts(stage, plan, points),
+            Stage::Ac(stage) => self.ac_acts(stage, plan, points),
+            Stage::SourcesOff => discharge::off_acts(self, points),
             Stage::Discharge => discharge::acts(self, points),
+        }
+    }
+
+    fn dc_acts(&mut self, stage: DcStage, plan: &Plan, points: &Points) -> Vec<Act> {
+        let dc = dc_of(plan);
+        match stage {
+            DcStage::OpenFixture => leakage::open_acts(self, dc, points),
+            DcStage::ColdLeakage | DcStage::HotLeakage => {
+                leakage::acts(self, stage, plan, dc, points)
+            }
+            DcStage::StuckShort => contact::stuck_acts(self, points),
+            DcStage::Blocks => conformity::block_acts(self, plan, points),
+            DcStage::BlocksBeyond => conformity::block_beyond_acts(plan, points),
+            DcStage::Conducts => conformity::conduct_acts(plan, points, -plan.guard_v),
+            DcStage::ConductsBeyond => conformity::conduct_acts(plan, points, plan.guard_v),
+            DcStage::Threshold(direction) => threshold::acts(self, direction, plan, points),
+            DcStage::Timing => timing::acts(self, plan, points),
+            DcStage::Resistance => resistance::acts(self, plan, dc, points),
+        }
+    }
+
+    fn ac_acts(&mut self, stage: AcStage, plan: &Plan, points: &Points) -> Vec<Act> {
+        let ac = ac_of(plan);
+        match stage {
+            AcStage::Reference(it) => references::acts(self, it, plan, ac, points),
+            AcStage::Leakage | AcStage::LeakageHot => {
+                line::leakage::acts(self, stage, plan, ac, points)
+            }
+            AcStage::Blocks(shift) => conforms::block_acts(self, shift, plan, ac, points),
+            AcStage::Conducts(shift) => conforms::conduct_acts(self, shift, plan, ac, points),
+            AcStage::Threshold(way) => threshold::line_acts(self, way, plan, ac, points),
+            AcStage::Train => train::acts(self, plan, ac, points),
+            AcStage::LoopReady => line::ready_acts(self, ac, points),
+            AcStage::Loop => looped::acts(self, plan, ac, points),
         }
     }
 
@@ -81,24 +179,17 @@ impl State {
         &mut self,
         stage: Stage,
         plan: &Plan,
-        points: &Points,
+        (points, now): (&Points, RigTime),
         readings: &Readings,
     ) -> Next {
         let given = Given { points, readings };
         let next = match stage {
             Stage::Contact => Ok(contact::conclude(&mut self.record, &given)),
             Stage::Short => Ok(contact::conclude_short(&mut self.record, plan, &given)),
-            Stage::StuckShort => Ok(contact::conclude_stuck(self, &given)),
             Stage::Input => input::conclude(self, plan, &given),
             Stage::Turned => input::conclude_turned(self, &given),
-            Stage::ColdLeakage | Stage::HotLeakage => leakage::conclude(self, stage, plan, &given),
-            Stage::Blocks => conformity::conclude_blocks(self, plan, &given),
-            Stage::BlocksBeyond => conformity::conclude_blocks_beyond(self, &given),
-            Stage::Conducts => conformity::conclude_conducts(self, &given),
-            Stage::ConductsBeyond => conformity::conclude_conducts_beyond(self, &given),
-            Stage::Threshold(direction) => threshold::conclude(self, direction, plan, &given),
-            Stage::Timing => timing::conclude(self, plan, &given),
-            Stage::Resistance => resistance::conclude(self, plan, &given),
+            Stage::Dc(stage) => self.conclude_dc(stage, plan, (&given, now)),
+            Stage::Ac(stage) => self.conclude_ac(stage, plan, (&given, now)),
             Stage::SourcesOff => Ok(Next::Planned),
             Stage::Discharge => Ok(discharge::conclude(self, &given)),
         };
@@ -108,15 +199,75 @@ impl State {
         })
     }
 
+    fn conclude_dc(
+        &mut self,
+        stage: DcStage,
+        plan: &Plan,
+        (given, now): (&Given, RigTime),
+    ) -> Result<Next, NotDelivered> {
+        let dc = dc_of(plan);
+        match stage {
+            DcStage::OpenFixture => leakage::conclude_open(self, dc, given, now),
+            DcStage::ColdLeakage | DcStage::HotLeakage => {
+                leakage::conclude(self, stage, plan, dc, given)
+            }
+            DcStage::StuckShort => Ok(contact::conclude_stuck(self, given)),
+            DcStage::Blocks => conformity::conclude_blocks(self, plan, dc, given),
+            DcStage::BlocksBeyond => conformity::conclude_blocks_beyond(self, plan, dc, given),
+            DcStage::Conducts => conformity::conclude_conducts(self, given),
+            DcStage::ConductsBeyond => conformity::conclude_conducts_beyond(self, given),
+            DcStage::Threshold(direction) => threshold::conclude(self, direction, plan, given),
+            DcStage::Timing => timing::conclude(self, plan, given),
+            DcStage::Resistance => resistance::conclude(self, plan, dc, given),
+        }
+    }
+
+    fn conclude_ac(
+        &mut self,
+        stage: AcStage,
+        plan: &Plan,
+        (given, now): (&Given, RigTime),
+    ) -> Result<Next, NotDelivered> {
+        let ac = ac_of(plan);
+        match stage {
+            AcStage::Reference(it) => references::conclude(self, it, ac, given, now),
+            AcStage::Leakage | AcStage::LeakageHot => {
+                line::leakage::conclude(self, stage, plan, ac, given)
+            }
+            AcStage::Blocks(shift) => conforms::conclude_blocks(self, shift, plan, ac, given),
+            AcStage::Conducts(shift) => conforms::conclude_conducts(self, shift, plan, ac, given),
+            AcStage::Threshold(way) => threshold::conclude_line(self, way, plan, ac, given),
+            AcStage::Train => train::conclude(self, plan, ac, given),
+            AcStage::LoopReady => Ok(line::conclude_ready(self, ac, given)),
+            AcStage::Loop => looped::conclude(self, plan, ac, given),
+        }
+    }
+
     /// Adds results, which have no reply of a module behind them.
     pub fn found(&mut self, results: impl IntoIterator<Item = Found>) {
         for (of, value, unit, budget) in results {
+            if !self.measures(of) {
+                continue;
+            }
             let reading = Reading {
                 value,
                 unit,
-                budget,
+                budget: budget.covering(),
             };
             self.record.found::<Sample>(of, reading, []);
+        }
+    }
+
+    /// Returns true when the test measures the characteristic of this part.
+    pub fn measures(&self, of: Parameter) -> bool {
+        !(self.is_no_sample && of.is_sampled())
+    }
+
+    /// Returns what the fixture has shown.
+    pub fn fixture(&self) -> Fixture {
+        Fixture {
+            references: self.references,
+            open: self.open,
         }
     }
 

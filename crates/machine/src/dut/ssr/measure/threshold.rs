@@ -2,9 +2,13 @@
 //! from the nominal voltage for the turn-off.
 
 use super::conformity::conducts;
+use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
+use super::line::conforms::{self, Conducting};
+use super::line::stage::AcStage;
 use super::stage::Stage;
 use super::state::{Next, State};
+use crate::dut::ssr::ac_plan::AcPlan;
 use crate::dut::ssr::accuracy;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
@@ -27,12 +31,60 @@ pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Point
         Direction::Rising => 0.0,
         Direction::Falling => plan.control_v,
     };
-    let step = points.step(Device::SmuIn, before_v, search.next_v());
+    // After a step that has left the output as it was at the begin of every step, the next one needs none.
+    let step = match search.is_ready(direction) {
+        true => points.level(Device::SmuIn, search.next_v()),
+        false => points.step(Device::SmuIn, before_v, search.next_v()),
+    };
     vec![
         Act::Query(vec![step]),
         Act::Wait(plan.dwell()),
         Act::Query(vec![points.read(Device::SmuOut)]),
     ]
+}
+
+/// Returns the acts of one search step of an AC part; a few half cycles decide it.
+pub fn line_acts(
+    state: &mut State,
+    direction: Direction,
+    plan: &Plan,
+    ac: &AcPlan,
+    points: &Points,
+) -> Vec<Act> {
+    let Some(search) = state.search.or_else(|| interval(state, direction, plan)) else {
+        return Vec::new();
+    };
+    state.search = Some(search);
+    match direction {
+        Direction::Rising => conforms::rising_acts(state, search.next_v(), plan, ac, points),
+        Direction::Falling => {
+            conforms::falling_acts(state, (search.next_v(), plan.off_s), plan, ac, points)
+        }
+    }
+}
+
+/// Concludes one search step of an AC part.
+pub fn conclude_line(
+    state: &mut State,
+    direction: Direction,
+    plan: &Plan,
+    ac: &AcPlan,
+    given: &Given,
+) -> Result<Next, NotDelivered> {
+    let Some(search) = state.search else {
+        return Ok(Next::Planned);
+    };
+    let conducts = match direction {
+        Direction::Rising => conforms::conducting(ac, given)? == Conducting::Both,
+        Direction::Falling => !conforms::blocks(ac, given)?,
+    };
+    let again = Stage::Ac(AcStage::Threshold(direction));
+    Ok(narrowed(
+        state,
+        (search, conducts),
+        (direction, again),
+        plan,
+    ))
 }
 
 /// Returns the interval that holds the threshold: the output is proven to block at its lower end and to conduct at its
@@ -61,14 +113,30 @@ pub fn conclude(
     plan: &Plan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    let Some(mut search) = state.search else {
+    let Some(search) = state.search else {
         return Ok(Next::Planned);
     };
     let [ampere] = given.singles(Device::SmuOut)?;
-    search.narrow(conducts(ampere));
+    let again = Stage::Dc(DcStage::Threshold(direction));
+    Ok(narrowed(
+        state,
+        (search, conducts(ampere)),
+        (direction, again),
+        plan,
+    ))
+}
+
+/// Narrows the interval of a search, depending on whether the output conducted; `again` is the stage of the next step.
+fn narrowed(
+    state: &mut State,
+    (mut search, conducts): (Search, bool),
+    (direction, again): (Direction, Stage),
+    plan: &Plan,
+) -> Next {
+    search.narrow(conducts);
     if search.width_v() > plan.resolution_v && search.tried < MOST_STEPS {
         state.search = Some(search);
-        return Ok(Next::Insert(Stage::Threshold(direction)));
+        return Next::Insert(again);
     }
     state.search = None;
     let of = match direction {
@@ -81,5 +149,5 @@ pub fn conclude(
     let volts = search.middle_v();
     let budget = accuracy::threshold(plan, volts, search.width_v());
     state.found([(of, volts, Unit::Volt, budget)]);
-    Ok(Next::Planned)
+    Next::Planned
 }

@@ -1,4 +1,4 @@
-//! The graph of the sorter: nine states, eleven inputs, and the fall.
+//! Visits every state of the sorter that its inputs can reach: nine states, eleven inputs, and the fall of the part.
 
 use super::{Graph, SEEN, SensedEnd, show, truths};
 use crate::handling::ledger::Ledger;
@@ -77,7 +77,7 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
 fn the_sorter_is_the_drawing() {
     let mut graph = Graph::default();
     let mut mock = MockRig::at_rest();
-    let table = mock.wiring.axis.clone();
+    let table = mock.wiring.axis().clone();
     for number in 0..9 {
         let (_, station) = states(&mock)[number];
         mock.show_end(Move::AxisTo(station));

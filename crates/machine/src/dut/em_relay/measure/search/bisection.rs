@@ -14,8 +14,8 @@ pub(super) fn level(search: &Search) -> Volt {
     (search.untouched + search.changed) / 2.0
 }
 
-/// Returns the middle of the remaining half; after the last trial the threshold, or ramps unless trials have confirmed
-/// both ends.
+/// Returns the next level, the middle of the interval. After the last trial returns the threshold, if trials have
+/// confirmed both ends of the interval; else a ramp must find it.
 pub(super) fn next(search: &Search) -> Next {
     if search.trials < TRIALS {
         return Next::Try(level(search));

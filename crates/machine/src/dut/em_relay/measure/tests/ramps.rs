@@ -34,6 +34,7 @@ fn until_armed(acts: &[Act]) -> Span {
             | Act::SelectRange(_)
             | Act::ConfirmRange { .. }
             | Act::ConvertSinceMark(_)
+            | Act::Below { .. }
             | Act::Until { .. } => {}
         }
     }

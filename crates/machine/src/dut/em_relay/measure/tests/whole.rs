@@ -156,7 +156,7 @@ fn waits_after(acts: &[Act]) -> Span {
             | Act::CoilMask(_)
             | Act::SelectRange(_)
             | Act::ConfirmRange { .. } => {}
-            Act::Read(Read::Drop | Read::Coil) | Act::Until { .. } => break,
+            Act::Read(Read::Drop | Read::Coil) | Act::Below { .. } | Act::Until { .. } => break,
             Act::Read(_) => {}
         }
     }

@@ -1,12 +1,12 @@
 //! A fixture with a part on it, for tests: the bench answers the jobs of a test as instruments and modules do.
 #![allow(clippy::unwrap_used)]
 
-use super::Device as SsrDevice;
-use super::points::{Device, DigitalIn, DigitalOut, Points};
 use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
 use crate::dut::em_relay::settings::ReferenceSet;
 use crate::dut::procedure::Progress;
 use crate::dut::recipe::DeviceRecipe;
+use crate::dut::ssr::Device as SsrDevice;
+use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut, Points};
 use crate::dut::{Procedure, Recipe};
 use crate::instrument::act::{Job, JobDone, RunnerState};
 use crate::instrument::query::{Delivered, Query, Waveform};
@@ -21,26 +21,34 @@ use std::sync::Arc;
 use texts::Message;
 use units::{RigTime, Span};
 
+/// Offset of the meter at the output, A: the open fixture shows it.
+const OFFSET_A: f64 = 5e-9;
+
 /// Text of the rig.
-pub const RIG: &str = include_str!("../../../../../config/rigs/ssr/rig.toml");
+pub const RIG: &str = include_str!("../../../../../../config/rigs/ssr/rig.toml");
 /// Text of the recipe.
-pub const RECIPE: &str = include_str!("../../../../../config/rigs/ssr/recipes/ssr-dc-60v-3a.toml");
-const PROFILES: [(&str, &str); 4] = [
+pub const RECIPE: &str =
+    include_str!("../../../../../../config/rigs/ssr/recipes/ssr-dc-60v-3a.toml");
+const PROFILES: [(&str, &str); 5] = [
+    (
+        "ac-source-61500",
+        include_str!("../../../../../../config/instruments/ac-source-61500.toml"),
+    ),
     (
         "smu-2450",
-        include_str!("../../../../../config/instruments/smu-2450.toml"),
+        include_str!("../../../../../../config/instruments/smu-2450.toml"),
     ),
     (
         "digitizer-rigol",
-        include_str!("../../../../../config/instruments/digitizer-rigol.toml"),
+        include_str!("../../../../../../config/instruments/digitizer-rigol.toml"),
     ),
     (
         "digitizer-keysight",
-        include_str!("../../../../../config/instruments/digitizer-keysight.toml"),
+        include_str!("../../../../../../config/instruments/digitizer-keysight.toml"),
     ),
     (
         "pulse-source",
-        include_str!("../../../../../config/instruments/pulse-source.toml"),
+        include_str!("../../../../../../config/instruments/pulse-source.toml"),
     ),
 ];
 
@@ -148,7 +156,7 @@ impl Bench {
     pub fn with(part: Part) -> Self {
         let wiring = wiring(RIG, &profiles(|_, text| text.to_owned()));
         Self {
-            points: Points::resolve(&wiring).unwrap(),
+            points: Points::resolve(&wiring, false).unwrap(),
             image: Image::new(Arc::clone(&wiring)),
             wiring,
             part,
@@ -176,6 +184,7 @@ impl Bench {
             reference: None,
             accuracy: &crate::dut::em_relay::tests::context().accuracy,
             reference_parts: &ReferenceSet::default(),
+            certificate: None,
         };
         let device = SsrDevice::new(recipe, &ssr, &rig).unwrap();
         let order = TestOrder {
@@ -221,6 +230,10 @@ impl Bench {
                 JobDone::new(self.now, None)
             }
             Job::Query(queries) => self.runs(queries),
+            Job::Convert(conversion, waveforms) => JobDone {
+                converted: Some(conversion.run(waveforms)),
+                ..JobDone::new(self.now, None)
+            },
             other => panic!("no test of this kind does {other:?}"),
         }
     }
@@ -344,9 +357,12 @@ impl Bench {
                 self.source_v = given("level_v");
                 Vec::new()
             }
-            (Device::SmuOut, "source_and_read") => {
+            (Device::SmuOut, "settle_and_read") => {
                 self.source_v = given("level_v");
-                vec![self.output_a().min(given("limit_a")); 2]
+                let most_a = given("limit_a");
+                let is_part = !self.on.contains(&DigitalOut::Reference0);
+                let part_a = if is_part { self.output_a() } else { 0.0 };
+                vec![(part_a + OFFSET_A).clamp(-most_a, most_a); 2]
             }
             (Device::SmuOut, "read") => vec![self.output_a()],
             (Device::SmuOut, "drop_at_current") => {
@@ -425,8 +441,8 @@ impl Bench {
         }
         match (self.is_lit, self.is_heated) {
             (true, _) => self.source_v / (load_ohm + self.part.ohm),
-            (false, true) => self.part.hot_leakage_a,
-            (false, false) => self.part.leakage_a,
+            (false, true) => self.part.hot_leakage_a * self.source_v.signum(),
+            (false, false) => self.part.leakage_a * self.source_v.signum(),
         }
     }
 

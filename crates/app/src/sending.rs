@@ -1,0 +1,43 @@
+//! Sends the history to the databases of `fleet.toml` while a rig runs. The threads that send share nothing with that of
+//! the rig but the history file and the view.
+
+use super::controls::Controls;
+use super::order::Files;
+use fleet::{Pusher, TargetState};
+use machine::view::FleetView;
+
+/// Starts to send; returns `None` when `fleet.toml` names no database. Ends when the value is dropped.
+///
+/// # Errors
+/// Fails for a faulty `fleet.toml`.
+pub(super) fn start(files: &Files, controls: &Controls) -> anyhow::Result<Option<Pusher>> {
+    let fleet = config::load_fleet(&files.config)?;
+    if fleet.targets.is_empty() {
+        return Ok(None);
+    }
+    let view = controls.view.clone();
+    let told = move |states: &[TargetState]| {
+        let fleet: Vec<FleetView> = states.iter().map(shown).collect();
+        view.send_if_modified(|view| {
+            let changed = view.fleet != fleet;
+            view.fleet = fleet;
+            changed
+        });
+    };
+    Ok(Some(Pusher::start(
+        &fleet,
+        files.db.clone(),
+        Box::new(told),
+    )))
+}
+
+fn shown(state: &TargetState) -> FleetView {
+    FleetView {
+        url: state.url.clone(),
+        lag_parts: state.lag_parts,
+        lag_s: state.lag_s,
+        late: state.is_late(),
+        last_error: state.last_error.clone(),
+        sent_parts: state.sent_parts,
+    }
+}

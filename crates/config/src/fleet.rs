@@ -1,0 +1,214 @@
+//! Loads `fleet.toml`, the databases that collect the histories of many rigs. Without the file, or without a target in
+//! it, nothing leaves the rig.
+
+use super::error::ConfigError;
+use super::folder::Folder;
+use super::keys;
+use machine::rig::fault::Fault;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// Whether the link to a database is encrypted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TlsChoice {
+    /// Encrypted; the certificate of the server is checked.
+    #[default]
+    Verify,
+    /// Plain text.
+    Off,
+}
+
+/// Which raw replies a database gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SampleChoice {
+    /// None.
+    #[default]
+    None,
+    /// Those of parts that did not pass.
+    Rejects,
+    /// All.
+    All,
+}
+
+/// A database.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct FleetTarget {
+    /// `postgres://USER@HOST:PORT/DATABASE`, without password.
+    pub url: String,
+    /// Encryption.
+    #[serde(default)]
+    pub tls: TlsChoice,
+    /// Certificate of the authority that signed that of the server, PEM.
+    pub ca: Option<PathBuf>,
+    /// Raw replies to send.
+    #[serde(default)]
+    pub samples: SampleChoice,
+    /// Age of the oldest part that the database lacks at which an alarm is raised, seconds.
+    #[serde(default = "an_hour_s")]
+    pub alarm_after_s: u32,
+}
+
+/// What `fleet.toml` says.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+pub struct FleetSettings {
+    /// Name of the plant; not empty when there is a target.
+    #[serde(default)]
+    pub site: String,
+    /// Name of the rig; not empty when there is a target.
+    #[serde(default)]
+    pub rig: String,
+    /// Databases.
+    #[serde(default, rename = "target")]
+    pub targets: Vec<FleetTarget>,
+}
+
+const fn an_hour_s() -> u32 {
+    3600
+}
+
+/// Reads and checks `fleet.toml`; returns settings without targets when the file is missing.
+///
+/// # Errors
+/// Fails as [`super::Plant::load`] does.
+pub fn load_fleet(folder: &Folder) -> Result<FleetSettings, ConfigError> {
+    if !folder.has("fleet.toml") {
+        return Ok(FleetSettings::default());
+    }
+    let file = folder.file("fleet.toml", "the databases that collect histories")?;
+    let fleet: FleetSettings = file.settings(keys::fleet::FILE)?;
+    check(&fleet).map_err(|fault| file.locate(&fault))?;
+    Ok(fleet)
+}
+
+fn check(fleet: &FleetSettings) -> Result<(), Fault> {
+    for (key, name) in [("site", &fleet.site), ("rig", &fleet.rig)] {
+        let found = if name.is_empty() { "nothing" } else { name };
+        if name.is_empty() && !fleet.targets.is_empty() {
+            return Err(Fault::new(
+                key,
+                found,
+                "a name, because the file has a target",
+            ));
+        }
+    }
+    for (place, target) in fleet.targets.iter().enumerate() {
+        check_target(&format!("target.{place}"), target)?;
+        let same = |it: &FleetTarget| it.url == target.url;
+        if let Some(other) = fleet.targets[..place].iter().position(same) {
+            let fault = Fault::new(
+                format!("target.{place}.url"),
+                quoted(&target.url),
+                "a database of its own",
+            );
+            return Err(fault.against(format!("target.{other}.url")));
+        }
+    }
+    Ok(())
+}
+
+fn check_target(key: &str, target: &FleetTarget) -> Result<(), Fault> {
+    const URL: &str = "postgres://USER@HOST:PORT/DATABASE without a password";
+    let url = format!("{key}.url");
+    let rest = target
+        .url
+        .strip_prefix("postgres://")
+        .or_else(|| target.url.strip_prefix("postgresql://"));
+    let Some(rest) = rest else {
+        return Err(Fault::new(url, quoted(&target.url), URL));
+    };
+    let authority = rest.split(['/', '?']).next().unwrap_or_default();
+    let user = authority.rsplit_once('@').map_or("", |(user, _)| user);
+    // The message must not show the password.
+    if user.contains(':') || rest.contains("password=") {
+        return Err(Fault::new(url, "a URL with a password", URL));
+    }
+    if user.is_empty() || !rest.contains('/') {
+        return Err(Fault::new(url, quoted(&target.url), URL));
+    }
+    if target.tls == TlsChoice::Verify && target.ca.is_none() {
+        let expected = "a PEM file with the authority that signed the certificate of the server, or tls = \"off\"";
+        return Err(Fault::new(format!("{key}.ca"), "nothing", expected));
+    }
+    Ok(())
+}
+
+fn quoted(text: &str) -> String {
+    format!("\"{text}\"")
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::check_all;
+
+    /// A correct file, to which each case makes one change.
+    const GOOD: &str = "site = \"suzhou\"\nrig = \"rig-07\"\n[[target]]\nurl = \"postgres://rig@db:5432/relayrig\"\n\
+        tls = \"off\"\n";
+
+    /// Returns what the check of a configuration with this file says.
+    fn said(text: &str) -> String {
+        let dir = tempfile::tempdir().unwrap();
+        crate::init(dir.path(), "jzc-22f").unwrap();
+        std::fs::write(dir.path().join("fleet.toml"), text).unwrap();
+        check_all(&dir.path().into())
+            .map_or_else(|faults| faults.to_string(), |_| "accepted".to_owned())
+    }
+
+    #[test]
+    fn a_correct_file_becomes_settings() {
+        assert_eq!(said(GOOD), "accepted");
+        let built_in = load_fleet(&Folder::built_in()).unwrap();
+        assert_eq!(
+            built_in,
+            FleetSettings::default(),
+            "off until somebody names a database"
+        );
+    }
+
+    #[test]
+    fn each_fault_names_key_found_and_expected() {
+        let cases = [
+            (
+                "rig = \"rig-07\"\n",
+                "",
+                "rig: found nothing, expected a name, because the file has a target",
+            ),
+            (
+                "tls = \"off\"\n",
+                "",
+                "target[0].ca: found nothing, expected a PEM file",
+            ),
+            (
+                "rig@db",
+                "rig:s3cret@db",
+                "target[0].url: found a URL with a password, expected postgres://USER@",
+            ),
+            (
+                "postgres://",
+                "mysql://",
+                "target[0].url: found \"mysql://rig@db:5432/relayrig\", expected postgres://",
+            ),
+            (
+                "tls = \"off\"",
+                "tls = \"maybe\"",
+                "target[0].tls: found \"maybe\", expected \"verify\" or \"off\"",
+            ),
+            (
+                "site",
+                "sight",
+                "sight: found an unknown key, expected one of site, rig, target",
+            ),
+        ];
+        for (old, new, expected) in cases {
+            let said = said(&GOOD.replacen(old, new, 1));
+            assert!(said.contains(expected), "{expected}\n{said}");
+            assert!(
+                said.contains("fleet.toml:") && !said.contains("s3cret"),
+                "{said}"
+            );
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Why a database did not take the rows: each text names the database and what to do.
+
+use history::HistoryError;
+use std::path::PathBuf;
+use tokio_postgres::error::SqlState;
+
+/// Result of this crate.
+pub type Result<T> = std::result::Result<T, FleetError>;
+
+/// Why the database refuses this file, though it can be reached. Nothing was written.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// Another file sends under this name.
+    #[error(
+        "rig {rig} is in use: the file that began on {host} at {since} sends under this name (epoch {epoch}). Give this rig \
+         another name in fleet.toml, or, if it replaces the other, run `relayrig fleet push --take-over`"
+    )]
+    OtherFile {
+        /// Plant and name.
+        rig: String,
+        /// Computer of the other file.
+        host: String,
+        /// When the other file began.
+        since: String,
+        /// Epoch of the other file.
+        epoch: i32,
+    },
+    /// A later file has taken over.
+    #[error(
+        "rig {rig}: a later file has taken over (epoch {epoch}, from {host}, since {since}). Stop this program, or, if \
+         this is the right file, run `relayrig fleet push --take-over`"
+    )]
+    Superseded {
+        /// Plant and name.
+        rig: String,
+        /// Computer of the later file.
+        host: String,
+        /// When it began.
+        since: String,
+        /// Its epoch.
+        epoch: i32,
+    },
+    /// The database has more of this file than the file itself.
+    #[error(
+        "rig {rig}: the database has {there} batches of this file, the file knows of {here}; the last run there is {run} \
+         with {parts} parts. The file is an older backup or a copy of one that sends. Use the file that sent last, or \
+         continue with this one as a new epoch: `relayrig fleet push --take-over`"
+    )]
+    FileOlder {
+        /// Plant and name.
+        rig: String,
+        /// Batches that the database has.
+        there: i64,
+        /// Batches that the file has confirmed.
+        here: i64,
+        /// UUID of the last run that the database has.
+        run: String,
+        /// Parts of this run there.
+        parts: i64,
+    },
+    /// The database has less than it confirmed.
+    #[error(
+        "rig {rig}: the database has {there} batches of this file, but had confirmed {here}: it is an older backup or \
+         another database. Run `relayrig fleet push --again`, which sends what it lacks"
+    )]
+    DatabaseOlder {
+        /// Plant and name.
+        rig: String,
+        /// Batches that the database has.
+        there: i64,
+        /// Batches that the file has confirmed.
+        here: i64,
+    },
+    /// A run of the file has the number of another run.
+    #[error(
+        "rig {rig}: {count} runs of this file have numbers under which the database has other runs. The file was changed by \
+         hand or merged; continue as a new epoch: `relayrig fleet push --take-over`"
+    )]
+    RunDiffers {
+        /// Plant and name.
+        rig: String,
+        /// Number of such runs.
+        count: i64,
+    },
+}
+
+/// Reason why rows were not sent or a database not read.
+#[derive(Debug, thiserror::Error)]
+pub enum FleetError {
+    /// The URL cannot be read.
+    #[error(
+        "{target}: found a URL that cannot be read ({why}), expected postgres://USER@HOST:PORT/DATABASE"
+    )]
+    Url {
+        /// Database.
+        target: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// The password file cannot be used.
+    #[error(
+        "{path}: found {found}, expected a password file that only its owner can read (chmod 600)"
+    )]
+    PasswordFile {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        found: String,
+    },
+    /// The certificate file cannot be used.
+    #[error("{path}: found {found}, expected certificates in PEM form (`ca` of fleet.toml)")]
+    Ca {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        found: String,
+    },
+    /// The program has no TLS.
+    #[error(
+        "{target}: found tls = \"verify\", but this program was built without TLS; build it with `--features tls`, or set \
+         tls = \"off\" in a network of your own"
+    )]
+    NoTls {
+        /// Database.
+        target: String,
+    },
+    /// The database did not answer in time.
+    #[error(
+        "{target}: no answer in {seconds} s while {doing}; check network and server. The rows stay in the queue"
+    )]
+    TimeOut {
+        /// Database.
+        target: String,
+        /// What the program was doing.
+        doing: &'static str,
+        /// How long it waited, seconds.
+        seconds: u64,
+    },
+    /// The database said no, or the connection broke.
+    #[error("{target}: {said} (while {doing}). {remedy}")]
+    Database {
+        /// Database.
+        target: String,
+        /// What the program was doing.
+        doing: &'static str,
+        /// What the database said.
+        said: String,
+        /// What to do.
+        remedy: &'static str,
+        /// Error of the client library, of which `said` is the text.
+        error: tokio_postgres::Error,
+    },
+    /// There is no schema of this program.
+    #[error(
+        "{target}: found no schema relayrig, expected one; run `relayrig fleet init` as its owner"
+    )]
+    NoSchema {
+        /// Database.
+        target: String,
+    },
+    /// A schema of this name belongs to another program.
+    #[error(
+        "{target}: the schema relayrig belongs to another program; name another database. It was left untouched"
+    )]
+    Foreign {
+        /// Database.
+        target: String,
+    },
+    /// The schema is older than this program needs.
+    #[error(
+        "{target}: found schema {found}, expected {expected} or later; run `relayrig fleet init` as its owner"
+    )]
+    SchemaOlder {
+        /// Database.
+        target: String,
+        /// Step found.
+        found: i32,
+        /// Step expected.
+        expected: i32,
+    },
+    /// The database refuses this file.
+    #[error("{target}: {refusal}")]
+    Refused {
+        /// Database.
+        target: String,
+        /// Why.
+        refusal: Refusal,
+    },
+    /// The history cannot be read or written.
+    #[error(transparent)]
+    History(#[from] HistoryError),
+}
+
+impl FleetError {
+    /// Names the database and the step in an error of the client library.
+    pub(crate) fn of(target: &str, doing: &'static str, error: tokio_postgres::Error) -> Self {
+        Self::Database {
+            target: target.to_owned(),
+            doing,
+            said: said(&error),
+            remedy: remedy(&error),
+            error,
+        }
+    }
+
+    /// Returns true when sending again later may help without a person.
+    #[must_use]
+    pub const fn passes(&self) -> bool {
+        match self {
+            Self::TimeOut { .. } | Self::Database { .. } | Self::History(_) => true,
+            Self::Url { .. }
+            | Self::PasswordFile { .. }
+            | Self::Ca { .. }
+            | Self::NoTls { .. }
+            | Self::NoSchema { .. }
+            | Self::Foreign { .. }
+            | Self::SchemaOlder { .. }
+            | Self::Refused { .. } => false,
+        }
+    }
+
+    /// Returns the refusal, if the database refuses the file.
+    #[must_use]
+    pub const fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            Self::Refused { refusal, .. } => Some(refusal),
+            _ => None,
+        }
+    }
+}
+
+/// Names the database and the step in errors of the client library.
+pub(crate) trait Doing<T> {
+    /// Turns an error into one of this crate.
+    fn doing(self, target: &str, doing: &'static str) -> Result<T>;
+}
+
+impl<T> Doing<T> for std::result::Result<T, tokio_postgres::Error> {
+    fn doing(self, target: &str, doing: &'static str) -> Result<T> {
+        self.map_err(|error| FleetError::of(target, doing, error))
+    }
+}
+
+/// Returns what the database or the system said, without the wrapping of the library.
+fn said(error: &tokio_postgres::Error) -> String {
+    if let Some(db) = error.as_db_error() {
+        return db.message().to_owned();
+    }
+    let mut cause: &dyn std::error::Error = error;
+    while let Some(inner) = cause.source() {
+        cause = inner;
+    }
+    cause.to_string()
+}
+
+fn remedy(error: &tokio_postgres::Error) -> &'static str {
+    let Some(code) = error.code() else {
+        return "Check address, network and server; the rows stay in the queue";
+    };
+    let of_class = |class: &str| code.code().starts_with(class);
+    if of_class("28") {
+        "Check user and password (PGPASSWORD, or the file of PGPASSFILE) and pg_hba.conf of the server"
+    } else if *code == SqlState::INVALID_CATALOG_NAME {
+        "Create the database, or correct the name in fleet.toml"
+    } else if *code == SqlState::INSUFFICIENT_PRIVILEGE {
+        "Grant the role relayrig_writer (for questions relayrig_reader) to this user; `fleet init` needs the owner"
+    } else if *code == SqlState::DISK_FULL {
+        "The server is full: make room there; the rows stay in the queue"
+    } else if *code == SqlState::TOO_MANY_CONNECTIONS {
+        "Raise max_connections of the server; the rows stay in the queue"
+    } else {
+        "The rows stay in the queue; see the log of the server"
+    }
+}

@@ -1,0 +1,197 @@
+//! Sends in the background, in a thread of its own for each database. The rig never waits for it.
+
+use crate::push::push;
+use crate::status::age_s;
+use config::{FleetSettings, FleetTarget};
+use history::outbox::Outbox;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Pause after everything was sent.
+const PAUSE: Duration = Duration::from_secs(1);
+/// Longest pause after a failure; it begins at [`PAUSE`] and doubles.
+const LONGEST_PAUSE: Duration = Duration::from_secs(60);
+/// Longest time for which the end of the program waits for rows that are still queued.
+const LAST_ROWS: Duration = Duration::from_secs(5);
+
+/// How a database stands, for page, metrics and alarm.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TargetState {
+    /// Database, without password.
+    pub url: String,
+    /// Parts that it lacks.
+    pub lag_parts: u64,
+    /// Seconds since the judgement of the oldest of them; 0 when it lacks none.
+    pub lag_s: f64,
+    /// Age at which an alarm is due, seconds.
+    pub alarm_after_s: u32,
+    /// Why the last attempt failed; `None` after one that succeeded.
+    pub last_error: Option<String>,
+    /// Parts sent since the program began.
+    pub sent_parts: u64,
+}
+
+impl TargetState {
+    /// Returns true when the database lacks a part for longer than it may.
+    #[must_use]
+    pub fn is_late(&self) -> bool {
+        self.lag_s > f64::from(self.alarm_after_s)
+    }
+}
+
+/// Receives how the databases stand after each attempt.
+pub type Told = Box<dyn Fn(&[TargetState]) + Send + Sync>;
+
+/// Sends to all databases until it is dropped. Dropping waits at most [`LAST_ROWS`] for what is still queued.
+pub struct Pusher {
+    shared: Arc<Shared>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+struct Shared {
+    states: Mutex<Vec<TargetState>>,
+    told: Told,
+    ended: Mutex<usize>,
+    changed: Condvar,
+    stopping: AtomicBool,
+}
+
+impl Shared {
+    fn states(&self) -> MutexGuard<'_, Vec<TargetState>> {
+        self.states.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_stopping(&self) -> bool {
+        self.stopping.load(Ordering::Relaxed)
+    }
+
+    /// Waits until `limit` has passed or the program ends.
+    fn pause(&self, limit: Duration) {
+        let guard = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        let stopping = |_: &mut usize| !self.is_stopping();
+        drop(self.changed.wait_timeout_while(guard, limit, stopping));
+    }
+}
+
+impl Pusher {
+    /// Starts a thread for each database of `fleet`. `told` is called on these threads.
+    #[must_use]
+    pub fn start(fleet: &FleetSettings, db: PathBuf, told: Told) -> Self {
+        let state = |it: &FleetTarget| TargetState {
+            url: it.url.clone(),
+            alarm_after_s: it.alarm_after_s,
+            ..TargetState::default()
+        };
+        let shared = Arc::new(Shared {
+            states: Mutex::new(fleet.targets.iter().map(state).collect()),
+            told,
+            ended: Mutex::new(0),
+            changed: Condvar::new(),
+            stopping: AtomicBool::new(false),
+        });
+        let start = |place: usize| {
+            let (shared, fleet, db) = (Arc::clone(&shared), fleet.clone(), db.clone());
+            let thread = std::thread::Builder::new().name(format!("fleet-{place}"));
+            thread.spawn(move || {
+                send_until_the_end(&shared, &fleet, place, &db);
+                *shared.ended.lock().unwrap_or_else(PoisonError::into_inner) += 1;
+                shared.changed.notify_all();
+            })
+        };
+        let threads = (0..fleet.targets.len()).filter_map(|place| {
+            let started = start(place);
+            started
+                .inspect_err(|error| tracing::error!(%error, "no thread for sending"))
+                .ok()
+        });
+        let threads = threads.collect();
+        Self { shared, threads }
+    }
+}
+
+impl Drop for Pusher {
+    fn drop(&mut self) {
+        self.shared.stopping.store(true, Ordering::Relaxed);
+        self.shared.changed.notify_all();
+        let guard = self
+            .shared
+            .ended
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let running = |ended: &mut usize| *ended < self.threads.len();
+        // A thread that is not done by then ends with the program; its batch is sent again by the next one.
+        drop(
+            self.shared
+                .changed
+                .wait_timeout_while(guard, LAST_ROWS, running),
+        );
+    }
+}
+
+fn send_until_the_end(shared: &Shared, fleet: &FleetSettings, place: usize, db: &std::path::Path) {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build();
+    let Ok(runtime) =
+        runtime.inspect_err(|error| tracing::error!(%error, "no runtime for sending"))
+    else {
+        return;
+    };
+    let mut pause = PAUSE;
+    loop {
+        let last = shared.is_stopping();
+        let before = Instant::now();
+        let give_up = || shared.is_stopping() && before.elapsed() > LAST_ROWS;
+        let target = &fleet.targets[place];
+        let sent = Outbox::open(db)
+            .map_err(crate::FleetError::from)
+            .and_then(|mut outbox| {
+                let sent = runtime.block_on(push(&mut outbox, fleet, target, give_up));
+                note(shared, place, &outbox, &sent);
+                sent
+            });
+        match sent {
+            Ok(_) => pause = PAUSE,
+            Err(_) => pause = (pause * 2).min(LONGEST_PAUSE),
+        }
+        if last {
+            return;
+        }
+        shared.pause(pause);
+    }
+}
+
+/// Notes the end of an attempt; an error goes to the log when it is a new one.
+fn note(shared: &Shared, place: usize, outbox: &Outbox, sent: &crate::Result<crate::Pushed>) {
+    let mut states = shared.states();
+    let state = &mut states[place];
+    let lag = outbox
+        .known(&state.url)
+        .and_then(|known| known.map(|it| outbox.lag(&it)).transpose());
+    let lag = lag.ok().flatten().unwrap_or_default();
+    let was_late = state.is_late();
+    (state.lag_parts, state.lag_s) = (lag.parts, age_s(lag));
+    if state.is_late() && !was_late {
+        let (url, parts, seconds) = (&state.url, lag.parts, state.lag_s);
+        tracing::warn!("fleet: {url} lacks {parts} parts, the oldest for {seconds:.0} s");
+    }
+    match sent {
+        Ok(pushed) => {
+            if state.last_error.take().is_some() {
+                tracing::info!(target = state.url, "database reached again");
+            }
+            state.sent_parts += pushed.parts;
+        }
+        Err(error) => {
+            let text = error.to_string();
+            if state.last_error.as_ref() != Some(&text) {
+                tracing::warn!("fleet: {text}");
+            }
+            state.last_error = Some(text);
+        }
+    }
+    (shared.told)(&states);
+}

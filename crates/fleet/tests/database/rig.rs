@@ -1,0 +1,157 @@
+//! A rig: its history, and what it writes there.
+
+use config::{FleetSettings, FleetTarget};
+use fleet::{Pushed, Result, push};
+use history::outbox::Outbox;
+use history::{
+    AlarmRecord, LandingRecord, LotRecord, MeasurementRecord, PartRecord, Row, SampleRecord, Store,
+    snapshot_hash,
+};
+use machine::dut::Reason;
+use std::path::PathBuf;
+
+/// Judgement of the first part: 2026-01-31T23:59:00Z, so that parts lie in two months.
+const BEGIN_US: i64 = 1_769_903_940_000_000;
+
+/// A rig with a history of its own.
+pub struct Rig {
+    /// Name.
+    pub name: String,
+    /// History.
+    pub db: PathBuf,
+    pub folder: tempfile::TempDir,
+}
+
+impl Rig {
+    /// Makes a rig without history.
+    pub fn new(name: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        Self {
+            name: name.to_owned(),
+            db: folder.path().join("history.db"),
+            folder,
+        }
+    }
+
+    /// Tests `count` parts of a lot in a run of its own, each with `values` measurements; every tenth fails. Leaves the
+    /// last part in the machine.
+    pub fn run(&self, lot: &str, count: u64, values: usize) {
+        let mut store = Store::open(&self.db).unwrap();
+        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
+        store
+            .begin_lot(&LotRecord {
+                lot: lot.to_owned(),
+                recipe: "jzc-22f-012".to_owned(),
+                recipe_hash: snapshot_hash(&recipe_snapshot),
+                recipe_snapshot,
+                opened_at_us: BEGIN_US,
+                ..LotRecord::default()
+            })
+            .unwrap();
+        let rows: Vec<Row> = (1..=count)
+            .map(|seq| Row::Part(part(lot, seq, values)))
+            .collect();
+        store.record(&rows).unwrap();
+        let landed: Vec<Row> = (1..count)
+            .map(|seq| Row::Landed(landing(lot, seq)))
+            .collect();
+        store.record(&landed).unwrap();
+        store
+            .record(&[Row::Alarm(AlarmRecord {
+                lot: Some(lot.to_owned()),
+                code: "part_lost".to_owned(),
+                text: "a part is lost".to_owned(),
+                raised_at_us: BEGIN_US + 1,
+                ..AlarmRecord::default()
+            })])
+            .unwrap();
+        store.close_lot(lot, BEGIN_US + 1_000_000_000).unwrap();
+    }
+
+    /// Returns the settings of the rig.
+    pub fn settings(&self, target: &FleetTarget) -> FleetSettings {
+        FleetSettings {
+            site: "suzhou".to_owned(),
+            rig: self.name.clone(),
+            targets: vec![target.clone()],
+        }
+    }
+
+    /// Sends what the target lacks.
+    pub async fn push(&self, target: &FleetTarget) -> Result<Pushed> {
+        push(&mut self.outbox(), &self.settings(target), target, || false).await
+    }
+
+    /// Opens the queue.
+    pub fn outbox(&self) -> Outbox {
+        Outbox::open(&self.db).unwrap()
+    }
+
+    /// Returns a number that the history gives.
+    pub fn number(&self, sql: &str) -> i64 {
+        let file = rusqlite::Connection::open(&self.db).unwrap();
+        file.query_row(sql, [], |row| row.get(0)).unwrap()
+    }
+}
+
+fn landing(lot: &str, seq: u64) -> LandingRecord {
+    LandingRecord {
+        lot: lot.to_owned(),
+        kind: "lot".to_owned(),
+        seq,
+        bin: bin(seq).to_owned(),
+        at_us: at(seq) + 10,
+        cycle_s: Some(1.25),
+    }
+}
+
+fn bin(seq: u64) -> &'static str {
+    if seq.is_multiple_of(10) {
+        "voltage"
+    } else {
+        "pass"
+    }
+}
+
+fn at(seq: u64) -> i64 {
+    BEGIN_US + 1_000_000 * i64::try_from(seq).unwrap()
+}
+
+fn part(lot: &str, seq: u64, values: usize) -> PartRecord {
+    let fails = seq.is_multiple_of(10);
+    let measured = |n: usize| MeasurementRecord {
+        key: format!("value_{n}_v"),
+        value: Some(7.0 + seq as f64 / 1000.0 + n as f64),
+        uncertainty: Some(0.02),
+        high: Some(9.0),
+        verdict: "pass".to_owned(),
+        attempt: 1,
+        budget: Some("{\"gain\":0.01}".to_owned()),
+        samples: vec![SampleRecord {
+            line: "measure".to_owned(),
+            module: "01".to_owned(),
+            channel: "0".to_owned(),
+            command: "#010".to_owned(),
+            raw: ">4C53".to_owned(),
+            at_us: at(seq) - 1,
+        }],
+        ..MeasurementRecord::default()
+    };
+    PartRecord {
+        lot: lot.to_owned(),
+        seq,
+        serial: Some(format!("{lot}-{seq:06}")),
+        verdict: if fails { "fail" } else { "pass" }.to_owned(),
+        bin: bin(seq).to_owned(),
+        reasons: if fails {
+            vec![Reason::from_text("operate_voltage_v high")]
+        } else {
+            vec![]
+        },
+        judged_at_us: at(seq),
+        test_s: 0.61,
+        kind: "lot".to_owned(),
+        measurements: (0..values).map(measured).collect(),
+        ..PartRecord::default()
+    }
+}

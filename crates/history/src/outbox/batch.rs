@@ -1,0 +1,236 @@
+//! Rows of a batch. Times are microseconds since 1970 UTC; numbers of parts and runs are the row numbers of the file.
+
+/// Which raw replies travel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SampleChoice {
+    /// None.
+    #[default]
+    None,
+    /// Those of parts that did not pass.
+    Rejects,
+    /// All.
+    All,
+}
+
+/// What one transaction of the target stores.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Batch {
+    /// Name.
+    pub uuid: String,
+    /// Place in the sequence of all batches of the file, from 1.
+    pub number: i64,
+    /// Last entry of the queue in it.
+    pub to: i64,
+    /// Key and meaning of every parameter of the file, by row number.
+    pub parameters: Vec<(i64, String, String)>,
+    /// Recipes of `runs`.
+    pub recipes: Vec<RecipeRow>,
+    /// New runs.
+    pub runs: Vec<RunRow>,
+    /// New parts, as they are now.
+    pub parts: Vec<PartRow>,
+    /// What became known later of parts in earlier batches.
+    pub changes: Vec<PartChange>,
+    /// Reasons of `parts` and `changes`.
+    pub reasons: Vec<ReasonRow>,
+    /// Measurements of `parts`.
+    pub measurements: Vec<MeasurementRow>,
+    /// Samples of `parts`.
+    pub samples: Vec<SampleRow>,
+    /// Curves of `parts`.
+    pub curves: Vec<CurveRow>,
+    /// Rows of all other tables.
+    pub events: Vec<EventRow>,
+}
+
+/// A recipe.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RecipeRow {
+    /// SHA-256 of `body`, hexadecimal.
+    pub hash: String,
+    /// Name.
+    pub name: String,
+    /// TOML.
+    pub body: String,
+    /// First use.
+    pub first_used_us: i64,
+}
+
+/// What is known of a run when it begins.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunRow {
+    /// Row number.
+    pub id: i64,
+    /// UUID.
+    pub uuid: String,
+    /// Name of the lot.
+    pub lot: String,
+    /// Number within the lot.
+    pub number: i64,
+    /// Hash of the recipe.
+    pub recipe_hash: String,
+    /// Begin.
+    pub opened_at_us: i64,
+    /// `rig`, `simulated` or `import`.
+    pub source: String,
+    /// Seed of the simulated rig.
+    pub seed: Option<String>,
+    /// Program and version.
+    pub written_by: String,
+}
+
+/// What of a part may become known after its judgement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartState {
+    /// Verdict.
+    pub verdict: String,
+    /// Bin of the verdict.
+    pub bin: Option<String>,
+    /// Reasons, JSON.
+    pub reasons: String,
+    /// Seconds since the part before left the nest.
+    pub cycle_s: Option<f64>,
+    /// Bin whose beam saw the part.
+    pub landed_bin: Option<String>,
+    /// When the beam saw it.
+    pub landed_at_us: Option<i64>,
+}
+
+/// A part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartRow {
+    /// Row number.
+    pub id: i64,
+    /// Row number of the run.
+    pub run: i64,
+    /// `lot` or `golden`.
+    pub kind: String,
+    /// Number of the part in its run.
+    pub seq: i64,
+    /// Serial number.
+    pub serial: Option<String>,
+    /// Time of the judgement.
+    pub judged_at_us: i64,
+    /// Seconds of the test.
+    pub test_s: Option<f64>,
+    /// The rest.
+    pub state: PartState,
+}
+
+/// A change of a part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartChange {
+    /// Entry of the queue.
+    pub event: i64,
+    /// Row number of the part.
+    pub part: i64,
+    /// Time of the judgement, by which the target finds the part.
+    pub judged_at_us: i64,
+    /// State after the change.
+    pub state: PartState,
+}
+
+/// A reason.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReasonRow {
+    /// Row number of the part.
+    pub part: i64,
+    /// Place among the reasons, from 1.
+    pub n: i64,
+    /// Code.
+    pub code: String,
+    /// Row number of the parameter.
+    pub parameter: Option<i64>,
+    /// `low` or `high`.
+    pub side: Option<String>,
+    /// Figure, pin or cause.
+    pub detail: String,
+}
+
+/// A measurement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasurementRow {
+    /// Row number of the part.
+    pub part: i64,
+    /// Row number of the run.
+    pub run: i64,
+    /// Time of the part's judgement.
+    pub judged_at_us: i64,
+    /// Row number of the parameter.
+    pub parameter: i64,
+    /// Attempt, from 1.
+    pub attempt: i64,
+    /// Value, in the unit of the parameter.
+    pub value: Option<f64>,
+    /// Expanded uncertainty, k = 2.
+    pub uncertainty: Option<f64>,
+    /// Lower limit.
+    pub low: Option<f64>,
+    /// Upper limit.
+    pub high: Option<f64>,
+    /// Verdict of the attempt.
+    pub verdict: String,
+    /// Budget, JSON.
+    pub budget: Option<String>,
+    /// `lot` or `golden` on the attempt that statistics count.
+    pub population: Option<String>,
+}
+
+/// A raw reply.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SampleRow {
+    /// Row number of the part.
+    pub part: i64,
+    /// Row number of the parameter.
+    pub parameter: i64,
+    /// Attempt.
+    pub attempt: i64,
+    /// Place within the attempt, from 1.
+    pub n: i64,
+    /// Line.
+    pub line: String,
+    /// Address of the module.
+    pub module: String,
+    /// Channel.
+    pub channel: String,
+    /// Text sent.
+    pub command: String,
+    /// Text received.
+    pub raw: String,
+    /// When the reply was complete.
+    pub at_us: i64,
+}
+
+/// A sampled curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveRow {
+    /// Row number of the part.
+    pub part: i64,
+    /// Name of the point.
+    pub signal: String,
+    /// Unit.
+    pub unit: String,
+    /// Value of one step.
+    pub step: f64,
+    /// Time of the first sample.
+    pub begin_us: i64,
+    /// Number of samples.
+    pub samples: i64,
+    /// Samples, as the file has them.
+    pub packed: Vec<u8>,
+}
+
+/// A row of another table, or a change of one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EventRow {
+    /// Entry of the queue.
+    pub event: i64,
+    /// Table.
+    pub kind: String,
+    /// Row number of the row in that table; of the run for what belongs to a run, of the lot for what belongs to a lot.
+    pub row: i64,
+    /// Row number of the run, where the row names one.
+    pub run: Option<i64>,
+    /// Columns with their values, JSON.
+    pub body: String,
+}

@@ -1,0 +1,100 @@
+//! The test of a batch: a kind of device tests the parts of all sockets together.
+
+use super::characteristic::Characteristic;
+use super::record::TestRecord;
+use super::verdict::Verdict;
+use crate::gauge::Judgement;
+use crate::instrument::act::{JobDone, RunnerState};
+use crate::rig::image::Image;
+use std::fmt::Debug;
+use units::{RigTime, Span};
+
+/// The parts that are tested together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BatchOrder {
+    /// Sockets that hold a part, by number, in ascending order.
+    pub sockets: Vec<u16>,
+    /// Number of the batch in its run, from 1.
+    pub number: u64,
+}
+
+/// Result of one part of a batch.
+#[derive(Debug, Clone)]
+pub struct SocketResult {
+    /// Socket of the part.
+    pub socket: u16,
+    /// Verdict of the part.
+    pub verdict: Verdict,
+    /// Each result against its limit.
+    pub judgements: Vec<(Characteristic, Judgement)>,
+    /// Results, with the replies from which they came.
+    pub record: TestRecord,
+}
+
+/// What the test of a batch has met that concerns the rig and not a part; the station raises an alarm.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum BatchTrouble {
+    /// A thermometer of the air has no usable reading.
+    ThermometerBroken,
+    /// A thermometer moves faster than the air can.
+    ThermometerJump,
+    /// Both thermometers of the air disagree.
+    ThermometersDiffer,
+    /// A thermometer stands still under power.
+    ThermometerStuck,
+    /// The air does not warm or cool as its power demands.
+    EnergyBalance,
+    /// The air warms without power.
+    HeatWithoutCommand,
+    /// The air is far above its set point.
+    OverSetPoint,
+    /// The air does not follow a rising set point.
+    RampNotReached,
+    /// The air warms or cools faster than the recipe allows.
+    RampTooFast,
+    /// The air does not follow a falling set point.
+    CoolingTooSlow,
+    /// The answer of the air to its power has no usable figures.
+    NotIdentified,
+    /// The limiter on the heater has tripped.
+    LimiterTripped,
+    /// The airflow switch is open.
+    AirflowLost,
+    /// The mains of the heater have failed.
+    MainsLost,
+    /// Sockets whose contact was open before heating, in words; the test goes on.
+    SocketsOpen(String),
+    /// Lag of the lot, s, and the one that earlier batches or the recipe state; the test goes on.
+    LagUnexpected(u32, u32),
+}
+
+/// What the test of a batch has brought.
+#[derive(Debug)]
+pub struct BatchOutcome {
+    /// A result for each socket of the order.
+    pub results: Vec<SocketResult>,
+    /// Troubles, in the order in which they were met.
+    pub troubles: Vec<BatchTrouble>,
+}
+
+/// Progress of the test of a batch after a step.
+#[derive(Debug)]
+pub enum BatchProgress {
+    /// The test goes on; holds the state of the runner that carries out the present stage.
+    Running(RunnerState),
+    /// Every part is judged. The test has switched its heat off.
+    Judged(BatchOutcome),
+}
+
+/// The test of a batch under way. Contacts of the sockets are in the image: the scan reads them all the time.
+pub trait BatchTest: Debug + Send {
+    /// Advances the test as far as it can. `done` is the outcome of the job that an earlier step requested; the caller
+    /// passes it once. The test has no job under way when it returns [`BatchProgress::Judged`].
+    fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> BatchProgress;
+
+    /// Returns the name of the stage under way.
+    fn stage(&self) -> &'static str;
+
+    /// Returns the longest time that the test may take; a longer one counts as stuck.
+    fn longest(&self) -> Span;
+}

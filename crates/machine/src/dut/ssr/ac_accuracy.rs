@@ -1,0 +1,192 @@
+//! Uncertainty budgets of AC parts, from the accuracies of digitizer, source and shunts and the terms of each method
+//! (ssr.md, section 5).
+
+use super::ac_plan::{AcPlan, CLAMP_V, SHUNT_ERROR};
+use super::measure::line::leakage::Leak;
+use super::measure::line::looped::OnState;
+use super::measure::line::train::Walk;
+use super::plan::Plan;
+use crate::gauge::Budget;
+use std::f64::consts::{SQRT_2, TAU};
+
+/// Error of the reference resistor and of the voltage that it divides, half width, as a share.
+const REFERENCE: f64 = 0.001;
+/// Delay between two channels that no reference has corrected, half width, s.
+const DELAY_S: f64 = 5e-6;
+/// Delay that remains after a reference has corrected it, half width, s.
+const DELAY_LEFT_S: f64 = 2e-6;
+/// Error of a gain after correction by a reference that was measured at another scale, half width, as a share.
+const GAIN_LEFT: f64 = 0.002;
+/// Difference between the fitted line voltage and the true curve (higher harmonics), half width, as a share of the
+/// value.
+const CURVE: f64 = 0.005;
+
+/// Error of a channel between its zero and its ends that a reference does not correct, half width, as a share of its
+/// range: a step of a converter of 12 bits.
+const LINEARITY: f64 = 2.5e-4;
+
+/// Change of the mains between the two ends of a drift, half width, as a share of the drop.
+const MAINS: f64 = 0.0012;
+
+/// Share of the distortion by which the mains moves it, half width.
+const WAITS: f64 = 0.04;
+
+/// Part of a leakage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LeakageOf {
+    /// The whole, rms.
+    Whole,
+    /// In phase with the voltage.
+    Resistive,
+    /// A quarter of a period ahead.
+    Capacitive,
+}
+
+/// Returns the error of the gain of a channel, half width, as a share.
+fn gain(ac: &AcPlan, is_referenced: bool) -> f64 {
+    match is_referenced {
+        true => GAIN_LEFT,
+        false => ac.digitizer.reading_pct / 100.0,
+    }
+}
+
+/// Returns the budget of a leakage or a part of it, microamperes. A delay between the channels makes some of the
+/// capacitive part look resistive.
+pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> Budget {
+    let (_, capacitive_a) = leak.split_a(ac);
+    let delay_s = if leak.is_referenced {
+        DELAY_LEFT_S
+    } else {
+        DELAY_S
+    };
+    // The reference in the same line has shown the product of shunt and gains, at another scale of the shunt channel.
+    let (divided, shunt) = match leak.is_referenced {
+        true => (REFERENCE, GAIN_LEFT),
+        false => (gain(ac, false), gain(ac, false) + SHUNT_ERROR),
+    };
+    let turned_a = TAU * ac.mains_hz * delay_s * capacitive_a;
+    let turned_a = match part {
+        LeakageOf::Resistive => turned_a,
+        LeakageOf::Whole | LeakageOf::Capacitive => 0.0,
+    };
+    Budget::default()
+        .with_bounds("gain", divided * value_a / 1e-6)
+        .with_bounds("gain of the shunt", shunt * value_a / 1e-6)
+        .with_bounds("delay", turned_a / 1e-6)
+        .with_random("noise", leak.noise_a / 1e-6)
+}
+
+/// Returns the budget of a time from the pulse train, microseconds: the mean of `count` instants, each known to one
+/// interval of the samples.
+pub fn line_time(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Budget {
+    let answers = walk.answers.last().map_or(0.0, |it| it.pulse.end_s);
+    let base_us = (plan.time.gain(answers) + plan.time.offset) * 1e6;
+    let slope = walk
+        .mains
+        .slope(walk.answers.first().map_or(0.0, |it| it.zero_s));
+    let zero_us = walk.mains.residual / 10.0 / slope.abs() * 1e6;
+    Budget::default()
+        .with_bounds("time base", base_us + plan.time.gain(took_us))
+        .with_random_bounds("sample interval", sampled(walk.step_s, count) * 1e6)
+        .with_random("zero of the mains", zero_us)
+}
+
+/// Returns the half width of the error of a jump that lies in the middle of two samples a `step` apart, as the mean of
+/// `count` of them.
+fn sampled(step: f64, count: usize) -> f64 {
+    step / 2.0 / (count as f64).sqrt()
+}
+
+/// Returns the budget of a voltage at which a part turns on, V: the mean of `count` jumps between two samples that the
+/// mains moves `step_v` apart.
+pub fn turn_on_voltage(
+    ac: &AcPlan,
+    is_referenced: bool,
+    step_v: f64,
+    (value_v, count): (f64, usize),
+) -> Budget {
+    let range_v = if value_v < CLAMP_V {
+        CLAMP_V
+    } else {
+        ac.peak_v()
+    };
+    let bits_v = 2.0 * range_v / 4096.0;
+    Budget::default()
+        .with_bounds("gain", gain(ac, is_referenced) * value_v)
+        .with_bounds("linearity", LINEARITY * 2.0 * range_v)
+        .with_bounds("curve", CURVE * value_v)
+        .with_random_bounds("sample interval", sampled(step_v, count))
+        .with_random_bounds("resolution", bits_v / 2.0)
+}
+
+/// Returns the error of the source voltage that calibrates the clamped channel, half width, as a share.
+fn source_share(plan: &Plan, ac: &AcPlan) -> f64 {
+    let (source, level_v) = (&plan.load.source, ac.reference_v());
+    (source.gain(level_v) + source.offset) / level_v
+}
+
+/// Returns the budget of a drop at the rated current, V.
+pub fn line_drop(plan: &Plan, ac: &AcPlan, on: &OnState, value_v: f64) -> Budget {
+    let gain_share = match on.is_referenced {
+        true => source_share(plan, ac),
+        false => gain(ac, false),
+    };
+    let offset_v = match on.is_referenced {
+        true => LINEARITY * 8.0 * ac.drop_scale_v,
+        // An offset has opposite signs in the two polarities, and their mean cancels it but for a twentieth.
+        false => 0.05 * ac.offset_v(ac.drop_scale_v),
+    };
+    let current = (gain(ac, on.is_referenced) + SHUNT_ERROR) * on.ohm * SQRT_2 * ac.rated_a;
+    Budget::default()
+        .with_bounds("gain", gain_share * value_v)
+        .with_bounds("offset", offset_v)
+        .with_bounds("current gain", current)
+        .with_random("noise", on.noise_v)
+}
+
+/// Returns the budget of the mean voltage of the conducting output (DC offset), mV.
+pub fn line_offset(ac: &AcPlan, on: &OnState) -> Budget {
+    let offset_v = match on.is_referenced {
+        true => LINEARITY * 8.0 * ac.drop_scale_v,
+        false => ac.offset_v(ac.drop_scale_v),
+    };
+    Budget::default()
+        .with_bounds("offset", offset_v * 1e3)
+        .with_bounds("window", on.peak_v)
+        .with_random("noise", on.noise_v * 1e3)
+}
+
+/// Returns the budget of the difference of the half cycles, percent; its only term is the offset of the shunt channel.
+pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
+    let mean_v = SQRT_2 * ac.rated_a * super::ac_plan::LOOP_SHUNT_OHM * 2.0 / std::f64::consts::PI;
+    let offset_v = match on.is_referenced {
+        true => LINEARITY * 8.0 * ac.looped().shunt_v,
+        false => ac.offset_v(ac.looped().shunt_v),
+    };
+    Budget::default().with_bounds("offset", offset_v / mean_v * 100.0)
+}
+
+/// Returns the budget of the rise of the drop, mV. Offsets cancel. Either end comes from one period of the record, a
+/// tenth of its samples.
+pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
+    let gain_share = gain(ac, on.is_referenced);
+    Budget::default()
+        .with_bounds("gain", gain_share * on.drift_v * 1e3)
+        .with_random("noise", SQRT_2 * 10f64.sqrt() * on.noise_v * 1e3)
+        .with_random_bounds("mains", MAINS * on.peak_v * 1e3)
+}
+
+/// Returns the budget of a distortion, mV, from that of a drop of the same size: the mains, whose harmonics and amplitude
+/// differ from the nominal ones, moves the instants at which the output waits.
+pub fn distortion(drop: &Budget, value_v: f64) -> Budget {
+    scaled(drop, 1e3).with_bounds("mains", WAITS * value_v * 1e3)
+}
+
+/// Returns a budget in another unit.
+pub fn scaled(budget: &Budget, factor: f64) -> Budget {
+    let mut scaled = budget.clone();
+    for term in &mut scaled.0 {
+        term.u *= factor;
+    }
+    scaled
+}

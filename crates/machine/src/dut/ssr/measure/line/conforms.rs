@@ -1,0 +1,279 @@
+//! Conformity of an AC part: it blocks at the turn-off voltage, and conducts at the turn-on voltage in both polarities.
+//!
+//! The control voltage stays a guard band away from the limit, on the side that is harder for the part. A part that
+//! fails there is tried a guard band beyond the limit, then far beyond: this tells a wrong threshold from an output
+//! that is stuck on or never turns on.
+
+use super::super::board::Position;
+use super::super::given::{Given, NotDelivered};
+use super::super::stage::Stage;
+use super::super::state::{Next, State};
+use super::leakage::{Seen, record_acts, seen};
+use super::stage::{AcStage, Shift};
+use super::{STORED, close, is_switched};
+use crate::dut::ssr::Finding;
+use crate::dut::ssr::ac_plan::{AcPlan, CLAMP_V, DIVIDER};
+use crate::dut::ssr::parameter::Parameter;
+use crate::dut::ssr::plan::Plan;
+use crate::dut::ssr::points::{Device, Points};
+use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL};
+use crate::dut::ssr::wave::Channel;
+use crate::dut::ssr::wave::pulses::Output;
+use crate::gauge::{Judgement, Side};
+use crate::instrument::act::Act;
+use crate::instrument::query::Waveform;
+use units::Span;
+
+/// A polarity counts as blocked when its voltage exceeds that of a conducting output for more than this share of a half
+/// period.
+const BLOCKED: f64 = 0.4;
+/// The current of a blocked output may exceed its limit by this share, because the digitizer has errors.
+const ROOM: f64 = 0.05;
+
+/// An output that still conducts this long after its control is off is stuck on, s.
+const LATE_S: f64 = 0.2;
+
+/// Polarities that conduct in the last period of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Conducting {
+    /// Both.
+    Both,
+    /// One.
+    One,
+    /// None.
+    None,
+}
+
+/// Returns the acts of the turn-off test: the output conducts at the nominal control voltage for a period and a half,
+/// then the control goes down.
+pub fn block_acts(
+    state: &mut State,
+    shift: Shift,
+    plan: &Plan,
+    ac: &AcPlan,
+    points: &Points,
+) -> Vec<Act> {
+    let limit_v = plan.turn_off_v.unwrap_or(0.0);
+    let level_v = match shift {
+        Shift::Within => plan
+            .turn_off_v
+            .map_or(0.0, |limit_v| limit_v + plan.guard_v),
+        Shift::Beyond => (limit_v - plan.guard_v).max(0.0),
+        Shift::Far | Shift::Late => 0.0,
+    };
+    let wait_s = match shift {
+        Shift::Within | Shift::Beyond | Shift::Far => plan.off_s,
+        Shift::Late => LATE_S,
+    };
+    falling_acts(state, (level_v, wait_s), plan, ac, points)
+}
+
+/// Returns the acts that let the part conduct at its nominal voltage, go down to a level, and take a record.
+pub fn falling_acts(
+    state: &mut State,
+    (level_v, wait_s): (f64, f64),
+    plan: &Plan,
+    ac: &AcPlan,
+    points: &Points,
+) -> Vec<Act> {
+    let mut acts = close(state, Position::Line, ac, points);
+    acts.extend([
+        Act::Query(vec![points.source(
+            Device::SmuIn,
+            plan.control_v,
+            &plan.input,
+        )]),
+        Act::Wait(Span::seconds(2.0 * ac.half_s())),
+    ]);
+    let scales = ac.blocks();
+    acts.extend(record_acts(plan, points, &scales, (level_v, wait_s), None));
+    acts
+}
+
+/// Returns true when the record of the digitizer shows an output that blocks.
+pub fn blocks(ac: &AcPlan, given: &Given) -> Result<bool, NotDelivered> {
+    let [divided, shunt] = given.waveforms()?;
+    let seen = seen(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))?;
+    Ok(match seen {
+        Seen::Blocked(leak) => leak.rms_a(ac) <= (1.0 + ROOM) * ac.blocked_a,
+        Seen::Beyond | Seen::Half | Seen::Conducts | Seen::WrongMains => false,
+    })
+}
+
+/// Concludes a turn-off test.
+pub fn conclude_blocks(
+    state: &mut State,
+    shift: Shift,
+    plan: &Plan,
+    ac: &AcPlan,
+    given: &Given,
+) -> Result<Next, NotDelivered> {
+    if !is_switched(state, given) {
+        return Ok(Next::Planned);
+    }
+    let of = Parameter::TurnOffVoltage;
+    match (blocks(ac, given)?, shift) {
+        (true, Shift::Within) => {
+            let proven = (of, Judgement::Pass);
+            state.proven.extend(plan.turn_off_v.map(|_| proven));
+        }
+        (true, Shift::Beyond) => state.proven.push((of, Judgement::Conditional(Side::Low))),
+        (true, Shift::Far) => state.record.stop(Finding::ConductsBelowTurnOff),
+        (false, Shift::Within) if plan.turn_off_v.is_none() => {
+            state.record.stop(Finding::StuckOn);
+        }
+        (false, Shift::Within) => {
+            return Ok(Next::Insert(Stage::Ac(AcStage::Blocks(Shift::Beyond))));
+        }
+        (false, Shift::Beyond) => return Ok(Next::Insert(Stage::Ac(AcStage::Blocks(Shift::Far)))),
+        (false, Shift::Far) => return Ok(Next::Insert(Stage::Ac(AcStage::Blocks(Shift::Late)))),
+        (true, Shift::Late) if plan.bounds(Parameter::TurnOffTime) => {
+            state.record.stop(Finding::TurnsOffTooLate);
+        }
+        (true, Shift::Late) => {}
+        (false, Shift::Late) => state.record.stop(Finding::StuckOn),
+    }
+    Ok(Next::Planned)
+}
+
+/// Returns the acts of the turn-on test, from 0 V up.
+pub fn conduct_acts(
+    state: &mut State,
+    shift: Shift,
+    plan: &Plan,
+    ac: &AcPlan,
+    points: &Points,
+) -> Vec<Act> {
+    let limit_v = plan.turn_on_v.unwrap_or(plan.control_v);
+    let level_v = match shift {
+        Shift::Within => plan
+            .turn_on_v
+            .map_or(plan.control_v, |it| it - plan.guard_v),
+        Shift::Beyond => limit_v + plan.guard_v,
+        Shift::Far | Shift::Late => plan.control_v,
+    };
+    if shift == Shift::Late {
+        return late_acts(state, plan, ac, points);
+    }
+    rising_acts(state, level_v, plan, ac, points)
+}
+
+/// Returns the acts that record the output long after its control has gone to the nominal voltage.
+fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec<Act> {
+    let scales = ac.conducts();
+    let mut acts = close(state, Position::Line, ac, points);
+    acts.extend([
+        Act::Query(vec![
+            points.source(Device::SmuIn, plan.control_v, &plan.input),
+            points.capture_all(plan, &scales),
+        ]),
+        Act::Wait(Span::seconds(LATE_S)),
+        Act::Query(vec![points.force_trigger()]),
+        Act::Wait(Span::seconds(scales.record_s) + STORED),
+        Act::Query(vec![
+            points.complete(),
+            points.channel(&scales, DIVIDED_CHANNEL),
+            points.channel(&scales, OUTPUT_CHANNEL),
+        ]),
+    ]);
+    acts
+}
+
+/// Returns the acts that step the control from 0 V to a level and record the output.
+pub fn rising_acts(
+    state: &mut State,
+    level_v: f64,
+    plan: &Plan,
+    ac: &AcPlan,
+    points: &Points,
+) -> Vec<Act> {
+    let scales = ac.conducts();
+    let mut acts = close(state, Position::Line, ac, points);
+    acts.extend([
+        Act::Query(vec![
+            points.source(Device::SmuIn, 0.0, &plan.input),
+            points.capture_all(plan, &scales),
+        ]),
+        // The output blocks before the step, whatever the level was before: at the next zero of the current.
+        Act::Wait(Span::seconds(ac.half_s() + plan.time_constant_s)),
+        Act::Query(vec![points.level(Device::SmuIn, level_v)]),
+        Act::Query(vec![points.force_trigger()]),
+        Act::Wait(Span::seconds(scales.record_s) + STORED),
+        Act::Query(vec![
+            points.complete(),
+            points.channel(&scales, DIVIDED_CHANNEL),
+            points.channel(&scales, OUTPUT_CHANNEL),
+        ]),
+    ]);
+    acts
+}
+
+/// Returns which polarities conduct in the last period of a record.
+pub fn conducting(ac: &AcPlan, given: &Given) -> Result<Conducting, NotDelivered> {
+    let [divided, clamped] = given.waveforms()?;
+    last_period(ac, [&divided, &clamped]).ok_or(NotDelivered(Device::Digitizer))
+}
+
+fn last_period(ac: &AcPlan, [divided, clamped]: [&Waveform; 2]) -> Option<Conducting> {
+    let output = Output {
+        divided: Channel::of(divided, DIVIDER, 0.0)?,
+        clamped: Channel::of(clamped, 1.0, 0.0)?,
+        clamp_v: CLAMP_V,
+        on_v: ac.on_v,
+    };
+    let half = (ac.half_s() / output.divided.step_s) as usize;
+    let count = output.divided.len();
+    let first = count.checked_sub(2 * half)?;
+    let blocked = |sign: f64| {
+        let above = (first..count).filter(|it| sign * output.at(*it) > ac.on_v);
+        above.count() as f64 > BLOCKED * half as f64
+    };
+    Some(match (blocked(1.0), blocked(-1.0)) {
+        (false, false) => Conducting::Both,
+        (true, false) | (false, true) => Conducting::One,
+        (true, true) => Conducting::None,
+    })
+}
+
+/// Concludes a turn-on test.
+pub fn conclude_conducts(
+    state: &mut State,
+    shift: Shift,
+    plan: &Plan,
+    ac: &AcPlan,
+    given: &Given,
+) -> Result<Next, NotDelivered> {
+    if !is_switched(state, given) {
+        return Ok(Next::Planned);
+    }
+    let of = Parameter::TurnOnVoltage;
+    match (conducting(ac, given)?, shift) {
+        (Conducting::One, Shift::Within | Shift::Beyond) => {
+            return Ok(Next::Insert(Stage::Ac(AcStage::Conducts(Shift::Far))));
+        }
+        (Conducting::One, Shift::Far | Shift::Late) => state.record.stop(Finding::HalfWave),
+        (Conducting::Both, Shift::Within) => {
+            let proven = (of, Judgement::Pass);
+            state.proven.extend(plan.turn_on_v.map(|_| proven));
+        }
+        (Conducting::Both, Shift::Beyond) => {
+            state.proven.push((of, Judgement::Conditional(Side::High)));
+        }
+        (Conducting::Both, Shift::Far) => state.record.stop(Finding::BlocksAboveTurnOn),
+        (Conducting::Both, Shift::Late) => state.record.stop(Finding::TurnsOnTooLate),
+        (Conducting::None, Shift::Within) if plan.turn_on_v.is_none() => {
+            state.record.stop(Finding::NeverOn);
+        }
+        (Conducting::None, Shift::Within) => {
+            return Ok(Next::Insert(Stage::Ac(AcStage::Conducts(Shift::Beyond))));
+        }
+        (Conducting::None, Shift::Beyond) => {
+            return Ok(Next::Insert(Stage::Ac(AcStage::Conducts(Shift::Far))));
+        }
+        (Conducting::None, Shift::Far) => {
+            return Ok(Next::Insert(Stage::Ac(AcStage::Conducts(Shift::Late))));
+        }
+        (Conducting::None, Shift::Late) => state.record.stop(Finding::NeverOn),
+    }
+    Ok(Next::Planned)
+}

@@ -1,0 +1,292 @@
+//! Drop of a conducting AC part at its rated current, in the loop. One record gives peak and rms, drift, DC offset,
+//! distortion, and the difference of the half cycles.
+
+use super::super::board::Position;
+use super::super::given::{Given, NotDelivered};
+use super::super::state::{Next, State};
+use super::{STORED, close, is_switched, leave};
+use crate::dut::ssr::Finding;
+use crate::dut::ssr::ac_accuracy as accuracy;
+use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LOOP_SHUNT_OHM};
+use crate::dut::ssr::parameter::Parameter;
+use crate::dut::ssr::plan::Plan;
+use crate::dut::ssr::points::{Device, Points};
+use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
+use crate::dut::ssr::references::References;
+use crate::dut::ssr::wave::Channel;
+use crate::dut::ssr::wave::drop_line::{self, DropLine};
+use crate::dut::ssr::wave::mains::Mains;
+use crate::dut::ssr::wave::{split, warming};
+use crate::instrument::act::Act;
+use crate::instrument::query::Waveform;
+use std::f64::consts::SQRT_2;
+use units::{Span, Unit};
+
+/// Least share of the peak current at which a sample counts for the fit of the drop.
+const LEAST: f64 = 0.3;
+/// Time after the control edge at which the drift of the drop begins, s; the next number is the time at which it ends.
+const EARLY_S: f64 = 0.01;
+const LATE_S: f64 = 0.2;
+/// Share of its range up to which the channel of the drop follows the output.
+const FOLLOWED: f64 = 0.93;
+/// Share of the peak of the current that both polarities reach at least in a whole wave.
+const HALF: f64 = 0.2;
+
+/// Returns the acts that record the part in the loop.
+pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec<Act> {
+    let scales = ac.looped();
+    let mut acts = close(state, Position::Loop, ac, points);
+    acts.extend([
+        Act::Query(vec![
+            points.source(Device::SmuIn, 0.0, &plan.input),
+            points.capture_all(plan, &scales),
+        ]),
+        Act::Query(vec![points.level(Device::SmuIn, plan.control_v)]),
+        Act::Wait(Span::seconds(scales.record_s) + STORED),
+    ]);
+    acts.extend(leave(state, points));
+    acts.push(Act::Query(vec![
+        points.complete(),
+        points.channel(&scales, DIVIDED_CHANNEL),
+        points.channel(&scales, OUTPUT_CHANNEL),
+        points.channel(&scales, SHUNT_CHANNEL),
+        points.off(Device::SmuIn),
+    ]));
+    acts
+}
+
+/// The two channels of a record in the loop.
+pub struct Drops<'a> {
+    /// The whole voltage of the output, which a channel for the drop cuts off where the output waits for its voltage.
+    whole: Channel<'a>,
+    volts: Channel<'a>,
+    ampere: Channel<'a>,
+    /// The fitted sine of the current.
+    pub current: Mains,
+    rated_peak_a: f64,
+    is_referenced: bool,
+}
+
+/// What the record of a loop shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnState {
+    /// Drop at the peak of the rated current, V: mean of both polarities.
+    pub peak_v: f64,
+    /// Drop at the rated current, rms, V.
+    pub rms_v: f64,
+    /// Rise of the peak drop from the early to the late time, V.
+    pub drift_v: f64,
+    /// Mean of the voltage, V.
+    pub offset_v: f64,
+    /// Difference of the output voltage from a sine, rms, V.
+    pub distortion_v: f64,
+    /// Difference of the charges of both half cycles over their sum.
+    pub unequal: f64,
+    /// Slope resistance of the output, ohm.
+    pub ohm: f64,
+    /// Standard uncertainty of the drop from noise, V.
+    pub noise_v: f64,
+    /// True when references have corrected the voltages.
+    pub is_referenced: bool,
+}
+
+impl<'a> Drops<'a> {
+    /// Takes the channels of a record, corrected by references where there are any; `None` when the current is no sine,
+    /// or flows in one polarity only.
+    pub fn of(
+        ac: &AcPlan,
+        references: Option<References>,
+        [whole, volts, shunt]: [&'a Waveform; 3],
+    ) -> Option<Self> {
+        let whole_gain = references.map_or(1.0, |it| it.divided_gain);
+        let whole = Channel::of(whole, DIVIDER / whole_gain, 0.0)?;
+        let (gain, zero_v) = references.map_or((1.0, 0.0), |it| (it.gain, it.zero_v));
+        let volts = Channel::of(volts, 1.0 / gain, zero_v / gain)?;
+        let (shunt_gain, shunt_zero_v) =
+            references.map_or((1.0, 0.0), |it| (it.shunt_gain(), it.shunt_zero_v));
+        let per_volt = 1.0 / LOOP_SHUNT_OHM / shunt_gain;
+        let ampere = Channel::of(shunt, per_volt, shunt_zero_v * per_volt)?;
+        let from = ampere.index(2.0 * ac.half_s());
+        let current = Mains::fit(ampere.pairs(from, ampere.len(), 4), ac.mains_hz)?;
+        let is_whole = volts.is_beside(&ampere)
+            && volts.is_beside(&whole)
+            && current.offset.abs() < HALF * current.amplitude();
+        is_whole.then_some(Self {
+            whole,
+            volts,
+            ampere,
+            current,
+            rated_peak_a: SQRT_2 * ac.rated_a,
+            is_referenced: references.is_some(),
+        })
+    }
+
+    /// Fits the straight line of drop against current for one polarity between two times.
+    fn line(&self, sign: f64, (from_s, to_s): (f64, f64)) -> Option<DropLine> {
+        let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
+        let least_a = LEAST * self.current.amplitude();
+        let samples = (from..to).map(|it| (sign * self.ampere.at(it), sign * self.volts.at(it)));
+        drop_line::fit(samples, least_a)
+    }
+
+    /// Returns the drop at the rated peak current, V: the mean of both polarities, which cancels an offset of the
+    /// channel.
+    fn peak_v(&self, between_s: (f64, f64)) -> Option<f64> {
+        let (plus, minus) = (self.line(1.0, between_s)?, self.line(-1.0, between_s)?);
+        let peak_a = self.rated_peak_a;
+        Some(f64::midpoint(plus.at(peak_a), minus.at(peak_a)))
+    }
+
+    /// Returns the rms of both polarities.
+    fn rms_v(&self, between_s: (f64, f64)) -> Option<f64> {
+        let (plus, minus) = (self.line(1.0, between_s)?, self.line(-1.0, between_s)?);
+        let rms = |line: &DropLine| line.rms(self.rated_peak_a);
+        Some(f64::midpoint(rms(&plus).powi(2), rms(&minus).powi(2)).sqrt())
+    }
+
+    /// Returns whole periods that end before the end of the record and begin after the first period.
+    fn whole(&self) -> Option<(f64, f64)> {
+        let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
+        let begins_s = self.current.zero_after(1.0 / self.current.hz);
+        let periods = ((last_s - begins_s) * self.current.hz).floor();
+        (periods >= 1.0).then(|| (begins_s, begins_s + periods / self.current.hz))
+    }
+
+    /// Reads everything; none when there are too few samples. The channel of the drop follows up to `most_v`.
+    pub fn read(&self, most_v: f64) -> Option<OnState> {
+        let whole = self.whole()?;
+        let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
+        let period_s = 1.0 / self.current.hz;
+        let around = |middle_s: f64| (middle_s - period_s / 2.0, middle_s + period_s / 2.0);
+        // One half of the first period is cold. The period after it is the earliest from which the drift may count.
+        let early = self.peak_v((EARLY_S, EARLY_S + period_s))?;
+        let late = self.peak_v(around(LATE_S))?;
+        let charges = self.charges(whole);
+        Some(OnState {
+            peak_v: self.cold_v(Self::peak_v)?,
+            rms_v: self.cold_v(Self::rms_v)?,
+            drift_v: late - early,
+            offset_v: self.mean_v(whole),
+            distortion_v: self.distortion_v(whole, most_v)?,
+            unequal: (charges.0 - charges.1).abs() / (charges.0 + charges.1),
+            ohm: f64::midpoint(plus.ohm, minus.ohm),
+            noise_v: plus.u_v.hypot(minus.u_v) / 2.0,
+            is_referenced: self.is_referenced,
+        })
+    }
+
+    /// Returns the mean voltage over whole periods, V; the interval at either end counts with its share.
+    fn mean_v(&self, (from_s, to_s): (f64, f64)) -> f64 {
+        let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
+        let inner: f64 = (from..to).map(|it| self.volts.at(it)).sum();
+        let before = (self.volts.time(from) - from_s) / self.volts.step_s;
+        let behind = 1.0 - (self.volts.time(to) - to_s) / self.volts.step_s;
+        let at = |it: usize| self.volts.at(it);
+        // Sums the trapezoids between the samples, and a part of the interval at either end.
+        let sum = inner + (before - 0.5) * at(from) + (behind - 0.5) * at(to.saturating_sub(1));
+        sum * self.volts.step_s / (to_s - from_s)
+    }
+
+    /// Returns the charges of the positive and of the negative half cycles, A s.
+    fn charges(&self, (from_s, to_s): (f64, f64)) -> (f64, f64) {
+        let (from, to) = (self.ampere.index(from_s), self.ampere.index(to_s));
+        (from..to).fold((0.0, 0.0), |(plus, minus), it| {
+            let ampere = self.ampere.at(it);
+            (plus + ampere.max(0.0), minus - ampere.min(0.0))
+        })
+    }
+
+    /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods. The noise of the
+    /// samples of the whole voltage is no distortion.
+    fn distortion_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> Option<f64> {
+        let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
+        let samples = (from..to).map(|it| (self.volts.time(it), self.at(it, most_v)));
+        let fitted = split::phasor(samples.clone(), self.current.hz)?;
+        let [sine, cosine] = fitted.of;
+        let squares: f64 = samples
+            .map(|(time_s, volts)| {
+                let (sin, cos) = (std::f64::consts::TAU * self.current.hz * time_s).sin_cos();
+                (volts - fitted.mean - sine * sin - cosine * cos).powi(2)
+            })
+            .sum();
+        Some((squares / (to - from) as f64).sqrt())
+    }
+
+    /// Returns the voltage of the output, from the finer channel up to its end at `most_v`.
+    fn at(&self, index: usize, most_v: f64) -> f64 {
+        let volts = self.volts.at(index);
+        match volts.abs() < most_v {
+            true => volts,
+            false => self.whole.at(index),
+        }
+    }
+
+    /// Returns values of the cold part: what the periods of the record show, carried back to the begin of the current.
+    /// `of` gives the value of the periods between two times.
+    fn cold_v(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<f64> {
+        let period_s = 1.0 / self.current.hz;
+        let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
+        let count = (last_s / period_s).floor() as usize;
+        let each = (0..count).map(|it| {
+            let from_s = it as f64 * period_s;
+            of(self, (from_s, from_s + period_s))
+        });
+        warming::begin(&each.collect::<Option<Vec<f64>>>()?)
+    }
+}
+
+/// Concludes the loop.
+pub fn conclude(
+    state: &mut State,
+    plan: &Plan,
+    ac: &AcPlan,
+    given: &Given,
+) -> Result<Next, NotDelivered> {
+    if !is_switched(state, given) {
+        return Ok(Next::Planned);
+    }
+    let [whole, volts, shunt] = given.waveforms()?;
+    let drops = Drops::of(ac, state.references, [&whole, &volts, &shunt]);
+    let Some(on) = drops
+        .as_ref()
+        .and_then(|it| it.read(FOLLOWED * 4.0 * ac.drop_scale_v))
+    else {
+        state.record.stop(Finding::HalfWave);
+        return Ok(Next::Planned);
+    };
+    if on.peak_v >= ac.drop_scale_v * 4.0 {
+        if plan.bounds(Parameter::Drop) {
+            state.record.stop(Finding::PeakDropTooHigh);
+        }
+        return Ok(Next::Planned);
+    }
+    let budget = |value_v: f64| accuracy::line_drop(plan, ac, &on, value_v);
+    let offset = accuracy::line_offset(ac, &on);
+    let offset_mv = on.offset_v * 1e3;
+    use Parameter as P;
+    use Unit::{Millivolt, Percent, Volt};
+    state.found([
+        (P::Drop, on.peak_v, Volt, budget(on.peak_v)),
+        (P::DropRms, on.rms_v, Volt, budget(on.rms_v)),
+        (P::DcOffset, offset_mv, Millivolt, offset),
+        (
+            P::Distortion,
+            on.distortion_v * 1e3,
+            Millivolt,
+            accuracy::distortion(&budget(on.distortion_v), on.distortion_v),
+        ),
+        (
+            P::HalfWave,
+            on.unequal * 100.0,
+            Percent,
+            accuracy::unequal(ac, &on),
+        ),
+        (
+            P::Drift,
+            on.drift_v * 1e3,
+            Millivolt,
+            accuracy::line_drift(ac, &on),
+        ),
+    ]);
+    Ok(Next::Planned)
+}

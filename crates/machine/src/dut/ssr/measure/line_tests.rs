@@ -1,0 +1,108 @@
+//! Tests of AC parts on a made-up fixture, from the pins to the discharge.
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::dut::Procedure;
+use crate::dut::ssr::points::{Device, DigitalIn};
+use crate::dut::ssr::tests::line_bench::{LineBench, Part, ZERO_CROSS, good, recipe};
+
+fn tested(text: &str, changes: &[(&str, &str)], part: Part) -> (LineBench, Procedure) {
+    let recipe = recipe(text, changes);
+    let mut bench = LineBench::with(part, &recipe);
+    let test = bench.tested(false);
+    (bench, test)
+}
+
+fn changed(change: impl Fn(&mut Part)) -> Part {
+    let mut part = good();
+    change(&mut part);
+    part
+}
+
+#[test]
+fn the_leakage_of_a_good_part_is_split() {
+    for (hz, changes) in [
+        (50.0, vec![]),
+        (60.0, vec![("mains_hz = 50.0", "mains_hz = 60.0")]),
+    ] {
+        let part = changed(|it| it.hz = hz * 0.9995);
+        let (_, test) = tested(ZERO_CROSS, &changes, part.clone());
+        let resistive = part.leak_s * 230.0 * 1e6;
+        let capacitive = std::f64::consts::TAU * hz * part.leak_f * 230.0 * 1e6;
+        let truth = [
+            (Parameter::LeakageResistive, resistive),
+            (Parameter::LeakageCapacitive, capacitive),
+            (Parameter::LeakageCold, resistive.hypot(capacitive)),
+        ];
+        for (of, truth) in truth {
+            let reading = test.record().result(of).unwrap();
+            let error = (reading.value - truth).abs();
+            assert!(
+                error <= 1.3 * reading.expanded(),
+                "{of:?}: {reading:?}, {truth}"
+            );
+        }
+        assert!(!test.is_live());
+    }
+}
+
+#[test]
+fn a_good_part_passes() {
+    let (_, test) = tested(ZERO_CROSS, &[], good());
+    assert_eq!(test.verdict().name(), "pass", "{:?}", test.verdict());
+    assert_eq!(
+        test.record().conforms,
+        [("v_on_conforms", true), ("v_off_conforms", true)]
+    );
+    assert!(!test.is_live());
+}
+
+#[test]
+fn a_welded_contactor_voids_the_part() {
+    for mirror in [DigitalIn::LineOpen, DigitalIn::LoopOpen] {
+        let part = changed(|it| it.stuck = vec![mirror]);
+        let (bench, test) = tested(ZERO_CROSS, &[], part);
+        assert_eq!(test.verdict().name(), "void", "{mirror:?}");
+        let opens = bench.log.iter().rev().find(|it| it.starts_with("set"));
+        assert!(!opens.unwrap().contains("contactor"), "{:?}", bench.log);
+    }
+}
+
+#[test]
+fn a_failed_instrument_leaves_both_contactors_open() {
+    for failing in [
+        (Device::Digitizer, "complete"),
+        (Device::PulseSource, "start"),
+        (Device::AcSource, "voltage"),
+        (Device::SmuIn, "source"),
+    ] {
+        let part = changed(|it| it.failing = Some(failing));
+        let (bench, test) = tested(ZERO_CROSS, &[], part);
+        assert_eq!(test.verdict().name(), "void", "{failing:?}");
+        let last = bench.log.iter().rev().find(|it| it.starts_with("set"));
+        assert!(!last.unwrap().contains("contactor"), "{:?}", bench.log);
+        assert!(!test.is_live(), "{failing:?}");
+    }
+}
+
+#[test]
+fn a_source_off_its_level_keeps_the_loop_open() {
+    let part = changed(|it| it.source = 1.15);
+    let (bench, test) = tested(ZERO_CROSS, &[], part);
+    assert_eq!(test.verdict().name(), "void");
+    assert!(!bench.log.iter().any(|it| it.contains("loop_contactor")));
+}
+
+#[test]
+fn sampled_characteristics_are_measured_on_their_parts_alone() {
+    let sampling = [("phases = 6 ", "sampling = 2\nphases = 6 ")];
+    for (judged, is_measured) in [(0, true), (1, true), (2, false)] {
+        let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &sampling));
+        bench.device.judged = judged;
+        let test = bench.tested(false);
+        let found = test.record().result(Parameter::Distortion).is_some();
+        assert_eq!(found, is_measured, "after {judged} parts");
+        assert!(test.record().result(Parameter::Drop).is_some());
+        assert_eq!(test.verdict().name(), "pass", "{:?}", test.verdict());
+    }
+}

@@ -1,0 +1,87 @@
+//! Value of a cold part from its values while a current warms it: each is the mean over one of several equal times, and
+//! they approach their end exponentially, with the time constant of the junction.
+
+/// Ratios of the distances from the end, from one value to the next, that are tried.
+const LEAST: f64 = 0.02;
+const MOST: f64 = 0.9;
+const TRIED: u32 = 45;
+/// Fewest values.
+const FEWEST: usize = 5;
+
+/// Returns the value at the begin of the first time; none for fewer than five values.
+pub fn begin(values: &[f64]) -> Option<f64> {
+    if values.len() < FEWEST {
+        return None;
+    }
+    let tried = (0..TRIED).map(|it| LEAST + (MOST - LEAST) * f64::from(it) / f64::from(TRIED - 1));
+    let best = tried.map(|ratio| fitted(values, ratio));
+    let best = best.min_by(|one, other| one.squares.total_cmp(&other.squares))?;
+    let begin = best.end + best.rest;
+    begin.is_finite().then_some(begin)
+}
+
+/// Values that approach `end`, from which they are `rest` away at the begin.
+struct Fit {
+    end: f64,
+    rest: f64,
+    squares: f64,
+}
+
+/// Fits both by least squares, for a distance that each time multiplies by `ratio`.
+fn fitted(values: &[f64], ratio: f64) -> Fit {
+    let count = values.len() as f64;
+    // The mean of the exponential over the first time, as a share of its begin.
+    let first = (1.0 - ratio) / -ratio.ln();
+    let shares: Vec<f64> = (0..values.len())
+        .map(|it| first * ratio.powi(it as i32))
+        .collect();
+    let mean = |all: &[f64]| all.iter().sum::<f64>() / count;
+    let (middle, share) = (mean(values), mean(&shares));
+    let (mut mixed, mut own) = (0.0, 0.0);
+    for (value, it) in values.iter().zip(&shares) {
+        mixed += (value - middle) * (it - share);
+        own += (it - share).powi(2);
+    }
+    let rest = mixed / own;
+    let end = middle - rest * share;
+    let off = values
+        .iter()
+        .zip(&shares)
+        .map(|(value, it)| value - end - rest * it);
+    Fit {
+        end,
+        rest,
+        squares: off.map(|it| it * it).sum(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns means over 20 ms of a value that goes from 1.2 by -5e-3 with this time constant, ms.
+    fn warming(tau_ms: f64) -> Vec<f64> {
+        let left = |at_ms: f64| (-at_ms / tau_ms).exp();
+        let mean = |it: u32| {
+            let from_ms = 20.0 * f64::from(it);
+            let share = tau_ms / 20.0 * (left(from_ms) - left(from_ms + 20.0));
+            1.2 - 5e-3 * (1.0 - share)
+        };
+        (0..10).map(mean).collect()
+    }
+
+    #[test]
+    fn the_cold_value_is_found_for_any_time_constant() {
+        for tau_ms in [6.0, 10.0, 20.0, 40.0, 100.0] {
+            let found = begin(&warming(tau_ms)).expect("ten values");
+            assert!((found - 1.2).abs() < 2e-4, "{tau_ms} ms: {found}");
+        }
+    }
+
+    #[test]
+    fn a_constant_value_stays_and_few_are_refused() {
+        let found = begin(&[1.5; 8]).expect("eight values");
+        assert!((found - 1.5).abs() < 1e-12);
+        assert_eq!(begin(&[1.5; 4]), None);
+    }
+}

@@ -1,0 +1,271 @@
+//! The test of a batch: contact resistances, identification of the chamber, passes through the windows, heat off.
+//!
+//! ```text
+//! contacts -> identification (first batch of a run) -> passes -> off
+//! ```
+//! Signals: the contacts in the image, which the scan reads all the time, and the two thermometers of the chamber, read
+//! once a second. The program gives the set point to the controller, which commands heater and vent.
+//!
+//! Troubles: whatever `chamber::watch` sees, an open chain of limiter, airflow and mains, a failed transaction. The
+//! heater goes off, no part of the batch is judged, and the station raises an alarm. Contacts that are open before
+//! heating and an unexpected lag are reported, and the batch goes on.
+
+mod contacts;
+mod creep;
+mod drop;
+mod passes;
+mod results;
+mod seconds;
+
+use super::Finding;
+use super::device::Device;
+use crate::dut::batch::{BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble};
+use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
+use crate::rig::image::Image;
+use crate::rig::rack::Socket;
+use contacts::Contact;
+use drop::{Found, Unreadable};
+use passes::Work;
+use results::Recorded;
+pub use results::SCATTER_K;
+use seconds::{Advance, Seconds};
+use texts::Message;
+use units::{RigTime, Span};
+
+named! {
+    /// Stage of the test of a batch.
+    Stage {
+        /// Contact resistances.
+        Contacts = "Contacts",
+        /// Identification of the chamber.
+        Identification = "Identification",
+        /// Passes through the windows.
+        Passes = "Passes",
+        /// Heat off.
+        Off = "HeatOff",
+    }
+}
+
+/// Longest duration of a batch.
+const LONGEST: Span = Span::ms(6 * 3_600_000);
+/// Time in which the scan reads every contact at least once.
+const SEEN: Span = Span::ms(1_000);
+
+/// Why a batch ends before its last pass.
+#[derive(Debug, Clone)]
+pub(super) enum Ended {
+    /// The chamber is in trouble.
+    Found(Finding),
+    /// A transaction has failed.
+    Trouble(Message),
+}
+
+#[derive(Debug)]
+enum State {
+    /// The fan runs until the scan has read every contact.
+    Cold(Runner),
+    /// Measures the resistances of the closed contacts.
+    Drops(Runner),
+    Seconds(Box<Seconds>),
+    Off(Runner, Option<Ended>),
+}
+
+/// The test of a batch.
+#[derive(Debug)]
+pub struct Test {
+    device: Device,
+    order: BatchOrder,
+    sockets: Vec<Socket>,
+    contacts: Vec<Contact>,
+    drops: Result<Vec<Found>, Unreadable>,
+    /// Record and chamber of the heated part of the test, once it is over.
+    ran: Option<Box<Seconds>>,
+    state: State,
+}
+
+/// What the test does after a stage.
+enum Next {
+    State(Box<State>),
+    Waiting(RunnerState),
+    Judged,
+}
+
+impl Test {
+    /// Begins the test of a batch; the door must be locked.
+    pub fn begin(device: Device, order: &BatchOrder, now: RigTime) -> Self {
+        let all = device.points.sockets.iter();
+        let sockets: Vec<Socket> = all
+            .filter(|it| order.sockets.contains(&it.number))
+            .copied()
+            .collect();
+        assert_eq!(
+            sockets.len(),
+            order.sockets.len(),
+            "a socket that the rack lacks"
+        );
+        let acts = vec![Act::Set(vec![(device.points.fan, true)]), Act::Wait(SEEN)];
+        Self {
+            contacts: sockets.iter().map(|it| Contact::new(it.contact)).collect(),
+            state: State::Cold(Runner::new(acts, now)),
+            order: order.clone(),
+            drops: Ok(Vec::new()),
+            ran: None,
+            sockets,
+            device,
+        }
+    }
+
+    fn advance(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Next {
+        match &mut self.state {
+            State::Cold(runner) => match runner.step(now, done, image) {
+                RunnerState::Done => Next::State(Box::new(State::Drops(self.drops_runner(now)))),
+                RunnerState::Trouble(why) => self.off(now, Some(Ended::Trouble(why))),
+                waiting => Next::Waiting(waiting),
+            },
+            State::Drops(runner) => match runner.step(now, done, image) {
+                RunnerState::Done => {
+                    self.drops = drop::resistances(
+                        &self.device.points,
+                        &runner.readings,
+                        &self.device.accuracy,
+                    );
+                    Next::State(Box::new(State::Seconds(Box::new(Seconds::begin(
+                        &self.device,
+                        now,
+                    )))))
+                }
+                RunnerState::Trouble(why) => self.off(now, Some(Ended::Trouble(why))),
+                waiting => Next::Waiting(waiting),
+            },
+            State::Seconds(seconds) => {
+                match seconds.step(&self.device, &self.contacts, now, done, image) {
+                    Advance::Waiting(state) => Next::Waiting(state),
+                    Advance::Over => self.off(now, None),
+                    Advance::Ended(why) => self.off(now, Some(why)),
+                }
+            }
+            State::Off(runner, _) => match runner.step(now, done, image) {
+                RunnerState::Done => Next::Judged,
+                RunnerState::Trouble(why) => {
+                    let (runner, why) = (Runner::new(Vec::new(), now), Some(Ended::Trouble(why)));
+                    Next::State(Box::new(State::Off(runner, why)))
+                }
+                waiting => Next::Waiting(waiting),
+            },
+        }
+    }
+
+    fn drops_runner(&self, now: RigTime) -> Runner {
+        let closed = |(socket, contact): (&Socket, &Contact)| {
+            (contact.cold() == Some(true)).then_some(*socket)
+        };
+        let closed: Vec<Socket> = self
+            .sockets
+            .iter()
+            .zip(&self.contacts)
+            .filter_map(closed)
+            .collect();
+        Runner::new(
+            drop::acts(&self.device.points, &closed, &self.device.accuracy),
+            now,
+        )
+    }
+
+    fn off(&self, now: RigTime, why: Option<Ended>) -> Next {
+        let mut acts = self.device.heat_off(0.0);
+        acts.push(Act::Read(Read::Restarts));
+        Next::State(Box::new(State::Off(Runner::new(acts, now), why)))
+    }
+
+    /// Judges the parts, or voids them all when the batch has ended early.
+    fn outcome(&self) -> BatchOutcome {
+        let why = match &self.state {
+            State::Off(_, why) => why.clone(),
+            State::Cold(_) | State::Drops(_) | State::Seconds(_) => {
+                panic!("a test judges at its end")
+            }
+        };
+        let mut troubles = self.open_sockets();
+        if let Some(Ended::Found(found)) = &why {
+            troubles.extend(found.trouble());
+        }
+        let why = match (why, &self.drops) {
+            (None, Err(Unreadable)) => Some(Ended::Found(Finding::DropNotReadable)),
+            (why, _) => why,
+        };
+        let complete = self
+            .ran
+            .as_deref()
+            .and_then(|it| Some((it, it.last.as_ref()?)));
+        let results = match (why, complete, &self.drops) {
+            (None, Some((ran, last)), Ok(drops)) => {
+                let recorded = Recorded {
+                    record: &ran.record,
+                    events: self.contacts.iter().map(Contact::events).collect(),
+                    cold_open: self
+                        .contacts
+                        .iter()
+                        .map(|it| it.cold() != Some(true))
+                        .collect(),
+                    drops,
+                    pulses: &ran.pulses,
+                    ambient_c: ran.ambient_c,
+                    last,
+                };
+                troubles.extend(results::unexpected_lag(&self.device, &recorded));
+                results::batch(&self.device, &self.order, &recorded, ran.work.as_ref())
+            }
+            (why, _, _) => results::void(&self.device, &self.order, why),
+        };
+        BatchOutcome { results, troubles }
+    }
+
+    /// Returns the trouble of contacts that were open before heating.
+    fn open_sockets(&self) -> Vec<BatchTrouble> {
+        let all = self.sockets.iter().zip(&self.contacts);
+        let open = all.filter(|(_, contact)| contact.cold() == Some(false));
+        let numbers: Vec<String> = open.map(|(socket, _)| socket.number.to_string()).collect();
+        let said = (!numbers.is_empty()).then(|| BatchTrouble::SocketsOpen(numbers.join(", ")));
+        said.into_iter().collect()
+    }
+}
+
+impl BatchTest for Test {
+    fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> BatchProgress {
+        let origin = match &self.state {
+            State::Seconds(seconds) => seconds.origin,
+            State::Cold(_) | State::Drops(_) | State::Off(..) => now,
+        };
+        for contact in &mut self.contacts {
+            contact.poll(image, now, origin);
+        }
+        let mut done = done;
+        loop {
+            match self.advance(now, done.take(), image) {
+                Next::Waiting(state) => return BatchProgress::Running(state),
+                Next::Judged => return BatchProgress::Judged(self.outcome()),
+                Next::State(next) => {
+                    if let State::Seconds(ran) = std::mem::replace(&mut self.state, *next) {
+                        self.ran = Some(ran);
+                    }
+                }
+            }
+        }
+    }
+
+    fn stage(&self) -> &'static str {
+        let stage = match &self.state {
+            State::Cold(_) | State::Drops(_) => Stage::Contacts,
+            State::Seconds(seconds) => match &seconds.work {
+                None | Some(Work::Identification(_) | Work::Rest(..)) => Stage::Identification,
+                Some(Work::Passes(_)) => Stage::Passes,
+            },
+            State::Off(..) => Stage::Off,
+        };
+        stage.name()
+    }
+
+    fn longest(&self) -> Span {
+        LONGEST
+    }
+}

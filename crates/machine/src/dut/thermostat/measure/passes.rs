@@ -1,0 +1,260 @@
+//! Runs the chamber second by second: identification, rest, passes.
+
+use super::super::Finding;
+use super::super::device::{Device, Lesson};
+use super::super::recipe::Control;
+use super::contacts::Events;
+use chamber::control::increment::{Increment, Rules};
+use chamber::control::pid::Pid;
+use chamber::control::scheduled::{FuzzyPid, Symmetry};
+use chamber::control::split_range::{Command, SplitRange};
+use chamber::control::{Controller, Law, Observed};
+use chamber::lag::{Record, Transition};
+use chamber::plan::narrowed;
+use chamber::program::{Phase, Program, Waiting, Window};
+use chamber::tune::identify::{Identification, Step};
+use chamber::tune::{Identified, Settings};
+use chamber::watch::slope::SlidingSlope;
+use chamber::watch::{Second, Watch};
+
+/// Power of the heater in the identification, 1 = full heater.
+const STEP: f64 = 0.15;
+/// Rest before the passes, s: afterwards the chamber responds to present power alone.
+const REST_S: u32 = 120;
+/// Temperature for which the set point heads after the last pass, C; the batch ends before it is reached.
+const UNLOAD_C: f64 = 40.0;
+/// Time in a window after which the slope over a minute no longer includes the approach, s.
+const SETTLES_S: u32 = 150;
+/// Seconds for which the record goes on after the last pass, so that it covers the last event.
+const AFTER_S: u32 = 3;
+
+/// Readings of a second, C.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen {
+    /// Control thermometer, at the controller; `None` without a valid reading.
+    pub control_c: Option<f64>,
+    /// Reference thermometer, beside the parts; `None` without a valid reading.
+    pub reference_c: Option<f64>,
+    /// Temperature of the room.
+    pub ambient_c: f64,
+    /// Numbers of live sockets that have yet to switch.
+    pub waiting: Waiting,
+}
+
+/// What the chamber does at present.
+#[derive(Debug)]
+pub enum Work {
+    /// Identification of the chamber, with a step of the heater.
+    Identification(Box<Identification>),
+    /// Rest with the fan only, for the remaining seconds.
+    Rest(Identified, u32),
+    /// Passes through the windows.
+    Passes(Box<Passes>),
+}
+
+impl Work {
+    /// Starts with an identification, unless an earlier batch of the run has made one. Then starts with a rest, because
+    /// the chamber still gives off heat of that batch.
+    pub fn new(device: &Device, ambient_c: f64, operate_c: f64) -> Self {
+        match &device.lesson {
+            Some(lesson) => Self::Rest(lesson.chamber, REST_S),
+            None => {
+                let run = Identification::new(STEP, ambient_c, operate_c);
+                Self::Identification(Box::new(run))
+            }
+        }
+    }
+
+    /// Performs a second and returns the command for heater and vent; `None` when the batch is over.
+    ///
+    /// # Errors
+    /// Fails with the trouble of the chamber; the caller switches the heater off.
+    pub fn step(
+        &mut self,
+        device: &Device,
+        seen: &Seen,
+        record: &Record,
+        events: &dyn Fn() -> Vec<Events>,
+    ) -> Result<Option<Command>, Finding> {
+        let control_c = seen.control_c.ok_or(Finding::SensorBroken)?;
+        match self {
+            Self::Identification(run) => match run.step(control_c) {
+                Ok(Step::Go(command)) => Ok(Some(command)),
+                Ok(Step::Done(found)) => {
+                    *self = Self::Rest(found, REST_S);
+                    Ok(Some(Command::OFF))
+                }
+                Err(_) => Err(Finding::NotIdentified),
+            },
+            Self::Rest(found, 0) => {
+                let passes = Passes::new(device, found, control_c, seen.ambient_c);
+                *self = Self::Passes(Box::new(passes));
+                Ok(Some(Command::OFF))
+            }
+            Self::Rest(_, left) => {
+                *left -= 1;
+                Ok(Some(Command::OFF))
+            }
+            Self::Passes(passes) => passes.step(device, seen, control_c, record, events),
+        }
+    }
+
+    /// Returns the identified response of the chamber; `None` until it is known.
+    pub fn chamber(&self) -> Option<Identified> {
+        match self {
+            Self::Identification(_) => None,
+            Self::Rest(found, _) => Some(*found),
+            Self::Passes(passes) => Some(passes.chamber),
+        }
+    }
+}
+
+/// Passes through the windows.
+#[derive(Debug)]
+pub struct Passes {
+    chamber: Identified,
+    ambient_c: f64,
+    program: Program,
+    controller: Controller,
+    watch: Watch,
+    slope: SlidingSlope,
+    /// Number of passes.
+    passes: usize,
+    /// Seconds in the present phase.
+    stayed_s: u32,
+    lag_s: f64,
+    expected: [Window; 2],
+}
+
+impl Passes {
+    fn new(device: &Device, found: &Identified, control_c: f64, ambient_c: f64) -> Self {
+        let thermostat = &device.thermostat;
+        let expected = thermostat
+            .windows(&device.recipe.limits)
+            .unwrap_or_else(|| panic!("a recipe without windows is not feasible"));
+        let lesson = device.lesson.as_deref();
+        let [operate, reset] = lesson.map_or(expected, |it| it.windows);
+        let batch = lesson.map_or(0, |it: &Lesson| it.batch);
+        let knows = lesson.is_some_and(|it| it.lag.is_some());
+        let batch = usize::try_from(batch).unwrap_or(usize::MAX);
+        let all = thermostat.strategy().passes(batch, knows, operate, reset);
+        let lag_s = lesson
+            .and_then(|it| it.lag)
+            .map_or(thermostat.part.lag_s, |it| it.seconds);
+        Self {
+            chamber: *found,
+            ambient_c,
+            passes: all.len(),
+            program: Program::new(control_c, all, lag_s, UNLOAD_C),
+            controller: controller(thermostat.test.control, found),
+            watch: Watch::new(found),
+            slope: SlidingSlope::default(),
+            stayed_s: 0,
+            lag_s,
+            expected,
+        }
+    }
+
+    /// Returns true in the rise of the last pass.
+    pub fn is_last_rise(&self) -> bool {
+        self.program.phase() == Phase::Rise && self.program.pass() + 1 == self.passes
+    }
+
+    fn step(
+        &mut self,
+        device: &Device,
+        seen: &Seen,
+        control_c: f64,
+        record: &Record,
+        events: &dyn Fn() -> Vec<Events>,
+    ) -> Result<Option<Command>, Finding> {
+        let before = (self.program.phase(), self.program.pass());
+        let set = self.program.step(control_c, seen.waiting);
+        let (phase, pass) = (self.program.phase(), self.program.pass());
+        self.stayed_s = if phase == before.0 {
+            self.stayed_s + 1
+        } else {
+            0
+        };
+        if pass > before.1 {
+            let [operate, reset] = self.shown(record, &events());
+            self.program.narrow(operate, reset, self.lag_s);
+        }
+        if phase == Phase::Cool {
+            return Ok((self.stayed_s < AFTER_S).then_some(Command::OFF));
+        }
+        let observed = Observed {
+            measured_c: control_c,
+            ambient_c: self.ambient_c,
+            door_open: false,
+        };
+        let command = self.controller.step(&set, &observed);
+        let second = Second {
+            control_c: seen.control_c,
+            reference_c: seen.reference_c,
+            ambient_c: self.ambient_c,
+            set,
+            command,
+            gain: self.controller.learnt_gain(),
+        };
+        if let Some(trouble) = self.watch.step(&second).first() {
+            return Err((*trouble).into());
+        }
+        self.check_slope(device, phase, control_c)?;
+        Ok(Some(command))
+    }
+
+    /// Checks the slope over the last minute within the windows against the limit of the recipe; fails with
+    /// [`Finding::RampTooFast`].
+    fn check_slope(
+        &mut self,
+        device: &Device,
+        phase: Phase,
+        control_c: f64,
+    ) -> Result<(), Finding> {
+        let slope = self.slope.step(control_c);
+        let within = match phase {
+            Phase::Rise | Phase::Fall => self.stayed_s > SETTLES_S,
+            Phase::Approach | Phase::Descent | Phase::Cool => false,
+        };
+        let most = device.thermostat.test.most_k_per_min;
+        let exceeds = within
+            && slope
+                .zip(most)
+                .is_some_and(|(slope, most)| slope.abs() > most);
+        match exceeds {
+            true => Err(Finding::RampTooFast),
+            false => Ok(()),
+        }
+    }
+
+    fn shown(&self, record: &Record, events: &[Events]) -> [Window; 2] {
+        let [operate, reset] = self.expected;
+        shown(record, events, self.lag_s, [operate, reset])
+    }
+}
+
+/// Returns the operate and reset windows, narrowed to the temperatures at which the contacts last switched.
+pub fn shown(record: &Record, events: &[Events], lag_s: f64, expected: [Window; 2]) -> [Window; 2] {
+    let filtered = record.filtered(lag_s);
+    let window = |of: &dyn Fn(&Events) -> Option<Transition>, expected: Window| {
+        let last = |it: &Events| filtered.at(of(it)?.first_s).map(|at| at.celsius);
+        let temperatures: Vec<f64> = events.iter().filter_map(last).collect();
+        narrowed(&temperatures, expected)
+    };
+    let [operate, reset] = expected;
+    [
+        window(&|it| it.switching.operate.last().copied(), operate),
+        window(&|it| it.switching.reset.last().copied(), reset),
+    ]
+}
+
+fn controller(control: Control, chamber: &Identified) -> Controller {
+    let tuned = Settings::simc(&chamber.first_order, 1.0);
+    let law = match control {
+        Control::Pid => Law::Pid(Pid::new(tuned)),
+        Control::Fuzzy => Law::Fuzzy(Increment::new(Rules::FURNACE)),
+        Control::FuzzyPid => Law::FuzzyPid(FuzzyPid::new(tuned, Symmetry::Even)),
+    };
+    Controller::new(law, SplitRange::of(chamber)).with_feed_forward(chamber)
+}

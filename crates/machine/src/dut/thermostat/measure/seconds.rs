@@ -1,0 +1,295 @@
+//! Runs the heated part of a batch: each second reads both thermometers, steps the chamber, sets heater and vent.
+
+use super::super::Finding;
+use super::super::device::{Device, WHOLE_V};
+use super::Ended;
+use super::contacts::{Contact, Events};
+use super::creep::{EACH_SECOND, Pulse};
+use super::drop;
+use super::passes::{Seen, Work};
+use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
+use crate::rig::image::Image;
+use crate::rig::point::{Point, Thermometer};
+use crate::rig::rack::Socket;
+use crate::rig::sample::{Quality, Sample};
+use chamber::control::split_range::Command;
+use chamber::lag::Record;
+use chamber::program::{TRAVEL_K_PER_MIN, Waiting};
+use chamber::watch::sensors::{Sensors, Unpowered};
+use units::{RigTime, Span, Volt};
+
+const SECOND: Span = Span::ms(1_000);
+/// Time after which the safety chain must be closed, s: the airflow switch needs it.
+const CHAIN_S: usize = 15;
+/// Greatest age of an input of the safety chain that counts.
+const FRESH: Span = Span::ms(2_000);
+/// Range of room temperatures in which a chamber may stand, C.
+const ROOM_C: [f64; 2] = [5.0, 38.0];
+
+#[derive(Debug)]
+enum Doing {
+    Wait,
+    Read(Runner),
+    Set(Runner),
+    /// Pulses through the contacts of these places.
+    Pulse(Runner, Vec<usize>),
+}
+
+/// What a runner has done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Did {
+    Read,
+    Set,
+    Pulse,
+}
+
+/// Result of [`Seconds::step`].
+pub enum Advance {
+    /// The test waits for the runner in this state.
+    Waiting(RunnerState),
+    /// All passes are over.
+    Over,
+    /// The batch ends early.
+    Ended(Ended),
+}
+
+/// The heated part of a batch.
+#[derive(Debug)]
+pub struct Seconds {
+    /// Time zero of the record.
+    pub origin: RigTime,
+    /// Readings of the reference thermometer.
+    pub record: Record,
+    /// Its last reading.
+    pub last: Option<Sample>,
+    /// Temperature of the room, C.
+    pub ambient_c: f64,
+    /// What the chamber does; `None` before the first reading.
+    pub work: Option<Work>,
+    sensors: Sensors,
+    unpowered: Unpowered,
+    /// Command of the last second.
+    command: Command,
+    /// Resistances in the last rise, by the place of the contact in the batch.
+    pub pulses: Vec<(usize, Pulse)>,
+    /// Place of the contact that gets the next pulse.
+    next: usize,
+    tick: RigTime,
+    doing: Doing,
+}
+
+impl Seconds {
+    /// Begins: closes the contactor while the heater is at zero.
+    pub fn begin(device: &Device, now: RigTime) -> Self {
+        let points = &device.points;
+        let mut acts = vec![levels(device, Command::OFF)];
+        acts.push(Act::Set(vec![(points.contactor, true)]));
+        Self {
+            origin: now,
+            record: Record::new(0.0, 0.0),
+            last: None,
+            ambient_c: ROOM_C[1],
+            work: None,
+            sensors: Sensors::default(),
+            unpowered: Unpowered::default(),
+            command: Command::OFF,
+            pulses: Vec::new(),
+            next: 0,
+            tick: now,
+            doing: Doing::Set(Runner::new(acts, now)),
+        }
+    }
+
+    /// Advances as far as the outcome of the job allows.
+    pub fn step(
+        &mut self,
+        device: &Device,
+        contacts: &[Contact],
+        now: RigTime,
+        mut done: Option<&JobDone>,
+        image: &Image,
+    ) -> Advance {
+        loop {
+            let (did, state) = match &mut self.doing {
+                Doing::Wait if now < self.tick => {
+                    return Advance::Waiting(RunnerState::Wait(self.tick));
+                }
+                Doing::Wait => {
+                    let points = [device.points.control, device.points.reference];
+                    let read = Read::points(points.map(Point::Temperature));
+                    self.doing = Doing::Read(Runner::new(vec![Act::Read(read)], now));
+                    continue;
+                }
+                Doing::Read(runner) => (Did::Read, runner.step(now, done.take(), image)),
+                Doing::Set(runner) => (Did::Set, runner.step(now, done.take(), image)),
+                Doing::Pulse(runner, _) => (Did::Pulse, runner.step(now, done.take(), image)),
+            };
+            match (state, did) {
+                (RunnerState::Done, Did::Read) => match self.second(device, contacts, now, image) {
+                    Ok(Some(command)) => {
+                        let acts = vec![levels(device, command)];
+                        self.doing = Doing::Set(Runner::new(acts, now));
+                    }
+                    Ok(None) => return Advance::Over,
+                    Err(found) => return Advance::Ended(Ended::Found(found)),
+                },
+                (RunnerState::Done, Did::Set) => self.doing = self.pulse(device, contacts, now),
+                (RunnerState::Done, Did::Pulse) => {
+                    self.keep_pulses(device, now);
+                    self.doing = Doing::Wait;
+                }
+                (RunnerState::Trouble(why), _) => return Advance::Ended(Ended::Trouble(why)),
+                (waiting @ (RunnerState::Job(_) | RunnerState::Busy | RunnerState::Wait(_)), _) => {
+                    return Advance::Waiting(waiting);
+                }
+            }
+        }
+    }
+
+    /// Returns the pulses of this second: through closed contacts, in the rise of the last pass.
+    fn pulse(&mut self, device: &Device, contacts: &[Contact], now: RigTime) -> Doing {
+        let rises = matches!(&self.work, Some(Work::Passes(passes)) if passes.is_last_rise());
+        if !rises || contacts.is_empty() {
+            return Doing::Wait;
+        }
+        let around = (0..contacts.len()).map(|it| (self.next + it) % contacts.len());
+        let closed = around.filter(|it| contacts[*it].is_live_and_closed());
+        let places: Vec<usize> = closed.take(EACH_SECOND).collect();
+        let Some(last) = places.last() else {
+            return Doing::Wait;
+        };
+        self.next = last + 1;
+        let sockets: Vec<Socket> = places
+            .iter()
+            .filter_map(|it| device.points.of_contact(contacts[*it].input()))
+            .collect();
+        let acts = drop::acts(&device.points, &sockets, &device.accuracy);
+        Doing::Pulse(Runner::new(acts, now), places)
+    }
+
+    /// Keeps the resistances of the pulses that have just ended; unreadable ones tell nothing.
+    fn keep_pulses(&mut self, device: &Device, now: RigTime) {
+        let Doing::Pulse(runner, places) = &self.doing else {
+            return;
+        };
+        let found = drop::resistances(&device.points, &runner.readings, &device.accuracy);
+        let at_s = now.since(self.origin).as_seconds();
+        let pulses = found.unwrap_or_default();
+        let pulses = places.iter().copied().zip(pulses.iter());
+        self.pulses
+            .extend(pulses.map(|(place, found)| (place, Pulse::of(at_s, found))));
+    }
+
+    /// Takes the readings of a second; returns its command, or `None` when all passes are over.
+    fn second(
+        &mut self,
+        device: &Device,
+        contacts: &[Contact],
+        now: RigTime,
+        image: &Image,
+    ) -> Result<Option<Command>, Finding> {
+        let points = &device.points;
+        let reference = usable(image, points.reference);
+        let control_c = usable(image, points.control).map(|it| it.value);
+        let reading = reference.clone().ok_or(Finding::SensorBroken)?;
+        if self.work.is_none() {
+            self.start(device, reading.value);
+        }
+        self.tick = self.tick + SECOND;
+        while self.tick + SECOND < now {
+            self.tick = self.tick + SECOND;
+            self.record.push(f64::NAN);
+        }
+        self.record.push(reading.value);
+        let reference_c = Some(reading.value);
+        self.last = Some(reading);
+        self.check_chain(device, now, image)?;
+        let now_s = now.since(self.origin).as_seconds();
+        let seen = Seen {
+            control_c,
+            reference_c,
+            ambient_c: self.ambient_c,
+            waiting: waiting(contacts, now_s),
+        };
+        let events = || {
+            contacts
+                .iter()
+                .map(Contact::events)
+                .collect::<Vec<Events>>()
+        };
+        self.check_sensors(&seen)?;
+        let Some(work) = &mut self.work else {
+            return Ok(Some(Command::OFF));
+        };
+        let next = work.step(device, &seen, &self.record, &events)?;
+        self.command = next.unwrap_or(Command::OFF);
+        Ok(next)
+    }
+
+    /// Checks thermometers and power outside of the passes, whose watch knows more.
+    fn check_sensors(&mut self, seen: &Seen) -> Result<(), Finding> {
+        if matches!(self.work, Some(Work::Passes(_))) {
+            return Ok(());
+        }
+        let readings = [seen.control_c, seen.reference_c];
+        let power = self.command.heater;
+        let found = self.sensors.step(readings, TRAVEL_K_PER_MIN, power);
+        if let Some(trouble) = found.first() {
+            return Err((*trouble).into());
+        }
+        let heats = seen
+            .control_c
+            .is_some_and(|it| self.unpowered.step(it, power));
+        match heats {
+            true => Err(Finding::HeatWithoutCommand),
+            false => Ok(()),
+        }
+    }
+
+    fn start(&mut self, device: &Device, reference_c: f64) {
+        let known = device.lesson.as_ref().map(|it| it.ambient_c);
+        self.ambient_c = known.unwrap_or(reference_c.clamp(ROOM_C[0], ROOM_C[1]));
+        self.origin = self.tick;
+        self.record = Record::new(0.0, self.ambient_c);
+        let windows = device.thermostat.windows(&device.recipe.limits);
+        let operate_c = windows.map_or(reference_c, |[operate, _]| operate.low_c);
+        self.work = Some(Work::new(device, self.ambient_c, operate_c));
+    }
+
+    fn check_chain(&self, device: &Device, now: RigTime, image: &Image) -> Result<(), Finding> {
+        let is_open = |it| image.input(it, now, FRESH) == Some(false);
+        let [limiter, airflow, mains] = device.points.chain.map(is_open);
+        let settled = self.record.seconds() > CHAIN_S;
+        match (limiter, mains, airflow && settled) {
+            (true, _, _) => Err(Finding::LimiterTripped),
+            (false, true, _) => Err(Finding::MainsLost),
+            (false, false, true) => Err(Finding::AirflowLost),
+            (false, false, false) => Ok(()),
+        }
+    }
+}
+
+fn levels(device: &Device, command: Command) -> Act {
+    let points = &device.points;
+    Act::Level(vec![
+        (points.heater, Volt(command.heater * WHOLE_V)),
+        (points.vent, Volt(command.vent * WHOLE_V)),
+    ])
+}
+
+fn usable(image: &Image, point: Thermometer) -> Option<Sample> {
+    let sample = image.temperature(point)?;
+    (sample.quality == Quality::Good && sample.value.is_finite()).then(|| sample.clone())
+}
+
+/// Counts the sockets that have yet to switch; a contact that was open when cold does not count.
+fn waiting(contacts: &[Contact], now_s: f64) -> Waiting {
+    let live = contacts.iter().filter(|it| it.cold() == Some(true));
+    let (operated, all) = live.fold((0, 0), |(operated, all), it| {
+        (operated + usize::from(it.is_open(now_s)), all + 1)
+    });
+    Waiting {
+        operate: all - operated,
+        reset: operated,
+    }
+}

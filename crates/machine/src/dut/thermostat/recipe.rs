@@ -1,0 +1,151 @@
+//! Sections of a recipe for temperature relays: the part, and how a batch is tested.
+
+use super::certificate::{self, EVERY_PART_V};
+use super::points::Points;
+use super::{Parameter, card, feasible, made_up};
+use crate::dut::card::Card;
+use crate::dut::device::{Made, Rig};
+use crate::dut::made_up::MadeUp;
+use crate::dut::recipe::{KindRecipe, Limits, PartFacts};
+use crate::dut::rejudge::UNCONVERTED;
+use crate::dut::{Calibration, Device, Kind, Recipe};
+use crate::gauge::Limit;
+use crate::rig::fault::Fault;
+use crate::rig::point::MissingPoint;
+use chamber::plan::Strategy;
+use chamber::program::Window;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The sections `[part]` and `[test]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ThermostatRecipe {
+    /// The part.
+    pub part: PartData,
+    /// How a batch is tested.
+    pub test: TestPlan,
+}
+
+/// Data of the part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartData {
+    /// Expected lag of the parts relative to the air, s.
+    pub lag_s: f64,
+}
+
+/// Feedback law of the controller; all of them run with feed-forward.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Control {
+    /// PID.
+    #[default]
+    Pid,
+    /// Fuzzy table whose output changes the power.
+    Fuzzy,
+    /// PID whose gains a fuzzy table adjusts.
+    FuzzyPid,
+}
+
+/// How a batch is tested.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestPlan {
+    /// Rate of the first pass of a batch that measures the lag, K/min.
+    pub learning_k_per_min: f64,
+    /// Rate of the other passes, K/min.
+    pub rate_k_per_min: f64,
+    /// Number of passes at that rate in each batch.
+    pub passes: usize,
+    /// Number of batches from one that measures the lag to the next.
+    pub learning_every: usize,
+    /// Distance by which the windows extend beyond the limits, K.
+    pub beyond_k: f64,
+    /// Expanded uncertainty that temperatures must keep, K; `None` for no such claim.
+    #[serde(default)]
+    pub claimed_u_k: Option<f64>,
+    /// Highest slope over a minute within the windows, K/min; `None` for no such limit.
+    #[serde(default)]
+    pub most_k_per_min: Option<f64>,
+    /// Law of the feedback.
+    #[serde(default)]
+    pub control: Control,
+}
+
+impl ThermostatRecipe {
+    /// Returns the windows of operate and reset temperatures in which parts are expected; `None` when a limit has an
+    /// open side.
+    pub fn windows(&self, limits: &Limits) -> Option<[Window; 2]> {
+        let window = |limit: Limit| {
+            Some(Window {
+                low_c: limit.low? - self.test.beyond_k,
+                high_c: limit.high? + self.test.beyond_k,
+            })
+        };
+        let operate = window(limits.of(Parameter::Operate))?;
+        Some([operate, window(limits.of(Parameter::Reset))?])
+    }
+
+    /// Returns which passes the batches get.
+    pub fn strategy(&self) -> Strategy {
+        let known = vec![self.test.rate_k_per_min; self.test.passes];
+        let fast = (self.test.learning_k_per_min != self.test.rate_k_per_min)
+            .then_some(self.test.learning_k_per_min);
+        Strategy {
+            learning: fast.into_iter().chain(known.clone()).collect(),
+            known,
+            every: self.test.learning_every,
+            repeat: self.test.rate_k_per_min,
+        }
+    }
+}
+
+impl KindRecipe for ThermostatRecipe {
+    fn kind(&self) -> Kind {
+        Kind::Thermostat
+    }
+
+    fn part(&self) -> PartFacts {
+        PartFacts {
+            body_mm: [0.0; 3],
+            pin_length_mm: 0.0,
+            reference: UNCONVERTED,
+            nominal_v: None,
+        }
+    }
+
+    fn on_rig(
+        &self,
+        recipe: Arc<Recipe>,
+        rig: &Rig,
+        stored: Option<Calibration>,
+    ) -> Result<Device, MissingPoint> {
+        let points = Points::resolve(rig.wiring)?;
+        let certificate = stored.and_then(|it| match it {
+            Calibration::Thermostat(of_rack) => Some(of_rack.certificate),
+            Calibration::EmRelay(_) => None,
+        });
+        let device = super::Device::new(recipe, self, points, *rig.accuracy);
+        let device = device.calibrated(certificate);
+        Ok(Device::Thermostat(Box::new(device)))
+    }
+
+    fn calibrated_for(&self) -> Option<f64> {
+        Some(EVERY_PART_V)
+    }
+
+    fn certified(&self, rig: &Rig, made: Made) -> Option<Calibration> {
+        let of_rack = certificate::Calibration::new(rig.certificate?.clone(), made);
+        Some(Calibration::Thermostat(of_rack))
+    }
+
+    fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
+        feasible::faults(self, limits, rig)
+    }
+
+    fn card(&self) -> Card {
+        card::card(self)
+    }
+
+    fn made_up(&self, limits: &Limits) -> MadeUp {
+        made_up::made_up(limits)
+    }
+}

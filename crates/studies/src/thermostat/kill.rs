@@ -1,0 +1,172 @@
+//! Kills the controller of a batch at random instants, in virtual time, on one rig that keeps its heat from life to life.
+//!
+//! After each kill the host watchdogs must make every output safe in time. The next start finds the chamber as it is: while
+//! the rack is hot it must neither unlock the door nor close the contactor of the heater.
+
+use crate::dice::Dice;
+use crate::figure::Figure;
+use crate::storm::life::{End, Runner};
+use crate::storm::scenario::Life;
+use anyhow::Context;
+use config::{Folder, Plant, load_recipe};
+use rigsim::journal::Entry;
+use rigsim::{Options, SharedRig};
+use std::sync::mpsc::Receiver;
+use tempfile::TempDir;
+
+const RECIPE: &str = "thermostat-ksd9700";
+/// Module of contactor, fan and lock, and their bits.
+const MODULE: &str = "relay_do";
+const CONTACTOR: u16 = 1;
+const FAN: u16 = 1 << 1;
+const LOCK_RELEASE: u16 = 1 << 2;
+/// Modules with a host watchdog.
+const WATCHED: usize = 3;
+/// Request for the temperature of the rack, with its checksum, and the full scale of the reply, C.
+const RACK: &[u8] = b"#212B8";
+const FULL_C: f64 = 200.0;
+/// Instants of the kills after the start of a life, s: loading, identification and passes.
+const INSTANTS_S: [u64; 2] = [400, 3000];
+/// Life of the next start, in which nothing may heat or unlock while the rack is hot, s.
+const LOOK_S: u64 = 30;
+const SECOND_US: u64 = 1_000_000;
+
+/// What the kills have shown.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Kills {
+    /// Kills while the contactor of the heater was closed.
+    pub heating: u64,
+    /// Kills after which an output was not safe within the time of the watchdog.
+    pub unsafe_after: u64,
+    /// Starts on a hot rack.
+    pub hot: u64,
+    /// Starts that unlocked a hot rack, closed its contactor or did not cool it.
+    pub wrong_starts: u64,
+    /// Lives that ended by themselves.
+    pub ended: u64,
+}
+
+/// Follows the outputs of the rig.
+struct Watch {
+    journal: Receiver<Entry>,
+    bits: u16,
+}
+
+impl Watch {
+    /// Takes the entries since the last call; returns every state of the outputs in them, the present one first, and the
+    /// expired watchdogs.
+    fn entries(&mut self) -> (Vec<u16>, Vec<(u64, f64)>) {
+        let (mut states, mut expired) = (vec![self.bits], Vec::new());
+        while let Ok(entry) = self.journal.try_recv() {
+            match entry {
+                Entry::Output { module, bits, .. } if module == MODULE => {
+                    states.push(bits);
+                    self.bits = bits;
+                }
+                Entry::Expired {
+                    t_us,
+                    last_request_us,
+                    carries,
+                    ..
+                } => expired.push((t_us - last_request_us, carries)),
+                Entry::Output { .. }
+                | Entry::Struck { .. }
+                | Entry::Late { .. }
+                | Entry::CoilOverdriven(_) => {}
+            }
+        }
+        (states, expired)
+    }
+}
+
+/// Returns the temperature of the rack as its module reports it, C.
+fn rack_c(rig: &SharedRig) -> anyhow::Result<f64> {
+    let reply = rig.exchange(0, RACK, rig.now_us());
+    let reply = reply.context("no reply of the thermometer in the rack")?;
+    let text = String::from_utf8_lossy(&reply.bytes).into_owned();
+    let hex = text.get(1..5).context("a reply without a reading")?;
+    let whole = i64::from_str_radix(hex, 16).with_context(|| format!("reading {text:?}"))?;
+    Ok(whole as f64 / 32767.0 * FULL_C)
+}
+
+/// Kills `count` lives.
+///
+/// # Errors
+/// Fails when the configuration does not load, or a runtime cannot be built.
+pub fn kills(count: u64, seed: u64) -> anyhow::Result<Kills> {
+    let folder = Folder::built_in_rig("thermostat").context("a rig that comes with the program")?;
+    let (plant, recipe) = (Plant::load(&folder)?, load_recipe(&folder, RECIPE)?);
+    let rig = rigsim::build(&Options {
+        files: app::simulated::files(&folder),
+        world: None,
+        seed,
+        recipe: RECIPE.into(),
+        parts: None,
+        reference_parts: false,
+        faults: Vec::new(),
+    })?;
+    let limit_us = (plant.wiring.bus.host_watchdog_ms * 1e3) as u64;
+    let hot_c = plant.wiring.rack().map_or(0.0, |it| it.unlock_below.0);
+    let place = TempDir::new()?;
+    let runner = Runner {
+        plant: &plant,
+        recipe: &std::sync::Arc::new(recipe),
+        db: &place.path().join("history.db"),
+        rig: &rig,
+    };
+    let (mut dice, mut found) = (Dice::new(seed), Kills::default());
+    let mut watch = Watch {
+        journal: rig.journal(),
+        bits: 0,
+    };
+    for round in 0..count {
+        let [from, to] = INSTANTS_S;
+        let until_s = dice.between(from, to);
+        let end = live(&runner, &format!("K{round}"), until_s)?;
+        found.ended += u64::from(end != End::Killed);
+        let (states, _) = watch.entries();
+        let heats = states.last().is_some_and(|it| it & CONTACTOR != 0);
+        found.heating += u64::from(heats);
+        rig.advance(rig.now_us() + limit_us + SECOND_US);
+        let (_, expired) = watch.entries();
+        let in_time = |it: &&(u64, f64)| it.0 <= limit_us && it.1.abs() < 0.01;
+        let safe = expired.iter().filter(in_time).count() >= WATCHED && watch.bits == 0;
+        found.unsafe_after += u64::from(!safe);
+        if rack_c(&rig)? < hot_c {
+            continue;
+        }
+        found.hot += 1;
+        live(&runner, &format!("H{round}"), LOOK_S)?;
+        let (states, _) = watch.entries();
+        let wrong = states.iter().any(|it| it & (CONTACTOR | LOCK_RELEASE) != 0);
+        let cools = states.iter().any(|it| it & FAN != 0);
+        found.wrong_starts += u64::from(rack_c(&rig)? >= hot_c && (wrong || !cools));
+    }
+    Ok(found)
+}
+
+fn live(runner: &Runner, lot: &str, seconds: u64) -> anyhow::Result<End> {
+    let life = Life {
+        killed_after_us: Some(seconds * SECOND_US),
+        ..Life::calm(1_000_000, SECOND_US)
+    };
+    Ok(runner.run_life(lot, &life, None, Dice::new(0))?.end)
+}
+
+/// Returns the figures of `count` kills.
+///
+/// # Errors
+/// Fails as [`kills`] does.
+pub fn figures(count: u64) -> anyhow::Result<Vec<Figure>> {
+    let found = kills(count, 1)?;
+    let heating = "kills while the heater was on, outputs not safe in the time of the watchdog";
+    Ok(vec![
+        Figure::none(heating, found.heating, found.unsafe_after),
+        Figure::none(
+            "starts on a hot rack that heated, unlocked or did not cool",
+            found.hot,
+            found.wrong_starts,
+        ),
+        Figure::none("lives that ended before their kill", count, found.ended),
+    ])
+}

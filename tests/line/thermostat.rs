@@ -1,0 +1,217 @@
+//! A batch of temperature relays on the simulated rig with a chamber.
+
+use crate::program::{Workshop, objects};
+use serde_json::Value;
+
+const RUN: &str = "--config config/rigs/thermostat run --sim --recipe thermostat-ksd9700 --json";
+
+/// Returns, for each part without defect that has the characteristic, its error divided by U.
+fn errors(parts: &[&Value], truth: &[Value], key: &str) -> Vec<f64> {
+    let one = |part: &&Value| {
+        let own = truth.iter().find(|it| it["seq"] == part["seq"])?;
+        let error = part["values"][key].as_f64()? - own[key].as_f64()?;
+        let u = part["uncertainty"][key].as_f64()?;
+        own["defect"].is_null().then_some(error / u)
+    };
+    parts.iter().filter_map(one).collect()
+}
+
+/// Returns true for a part that passes, or that fails by no more than U.
+fn is_good_or_near(part: &Value) -> bool {
+    let mut reasons = part["reasons"].as_array().unwrap().iter();
+    part["verdict"] != "void" && reasons.all(|it| it.as_str().unwrap().ends_with("not proven"))
+}
+
+#[test]
+fn a_batch_of_forty_agrees_with_the_truth() {
+    let workshop = Workshop::new("thermostat-batch");
+    let said = workshop.run(&format!(
+        "{RUN} --lot A --count 40 --seed 1 --truth t.jsonl"
+    ));
+    let rows = objects(&said.with_status(0).stdout);
+    let parts: Vec<&Value> = rows.iter().filter(|it| it["type"] == "part").collect();
+    let truth = objects(&workshop.read("t.jsonl"));
+    assert_eq!((parts.len(), truth.len()), (40, 40));
+    let mut sockets: Vec<u64> = parts.iter().flat_map(|it| it["socket"].as_u64()).collect();
+    sockets.sort_unstable();
+    assert!(sockets.into_iter().eq(1..=40));
+    for part in &parts {
+        assert_eq!(part["batch"], 1);
+        let own = truth.iter().find(|it| it["seq"] == part["seq"]).unwrap();
+        assert!(
+            !own["defect"].is_null() || is_good_or_near(part),
+            "{part}\n{own}"
+        );
+    }
+    // Parts of one lot share the errors of its rig, so that the three quantities count together.
+    let keys = [
+        "operate_temperature_c",
+        "reset_temperature_c",
+        "differential_k",
+    ];
+    let errors: Vec<f64> = keys
+        .iter()
+        .flat_map(|key| errors(&parts, &truth, key))
+        .collect();
+    let covered = errors.iter().filter(|it| it.abs() <= 1.0).count();
+    assert!(
+        errors.len() >= 90 && covered * 100 >= errors.len() * 93,
+        "{errors:?}"
+    );
+}
+
+const RECIPE: &str = "config/rigs/thermostat/recipes/thermostat-ksd9700.toml";
+const RIG: &str = "config/rigs/thermostat/rig.toml";
+const CERTIFIED: &str = "rack = \"rack.toml\"";
+
+/// Returns what a run of one part says that its configuration is refused for.
+fn refused(workshop: &Workshop) -> String {
+    let said = workshop.run(&format!("{RUN} --lot A --count 1 --seed 1"));
+    said.with_status(2).stderr.clone()
+}
+
+#[test]
+fn limits_without_room_for_u_are_refused() {
+    let workshop = Workshop::new("thermostat-limits");
+    let usual = "operate_temperature_c = { low = 80.0, high = 90.0 }";
+    let narrow = "operate_temperature_c = { low = 84.8, high = 85.2 }";
+    workshop.change(RECIPE, usual, narrow);
+    let said = refused(&workshop);
+    assert!(
+        said.contains("[limits].operate_temperature_c: found 84.8 to 85.2"),
+        "{said}"
+    );
+}
+
+#[test]
+fn without_a_certificate_a_tight_claim_is_refused() {
+    let workshop = Workshop::new("thermostat-claim");
+    workshop.change(
+        RECIPE,
+        "control = \"pid\"",
+        "claimed_u_k = 0.6\ncontrol = \"pid\"",
+    );
+    let check = "--config config/rigs/thermostat config check";
+    workshop.run(check).with_status(0);
+    workshop.change(RIG, CERTIFIED, "# none");
+    let said = refused(&workshop);
+    let expected = "[test].claimed_u_k: found 0.6, expected at least 0.8";
+    assert!(said.contains(expected), "{said}");
+}
+
+#[test]
+fn a_certificate_for_other_sockets_is_refused() {
+    let workshop = Workshop::new("thermostat-certificate");
+    workshop.change(
+        "config/rigs/thermostat/rack.toml",
+        "offset_k = [",
+        "offset_k = [0.1,",
+    );
+    let said = refused(&workshop);
+    let expected = "[map].offset_k: found 41 offsets, expected one for each of the 40 sockets";
+    assert!(said.contains(expected), "{said}");
+}
+
+#[test]
+fn the_history_keeps_the_certificate_as_a_calibration() {
+    let workshop = Workshop::new("thermostat-calibrate");
+    let own = "--config config/rigs/thermostat calibrate --sim --recipe thermostat-ksd9700 --json";
+    let stored = objects(&workshop.run(own).with_status(0).stdout);
+    let names: Vec<&str> = stored.iter().flat_map(|it| it["factor"].as_str()).collect();
+    assert_eq!(names, ["thermometer_error", "socket_offset"]);
+    assert_eq!(workshop.count("SELECT count(*) FROM calibration"), 1);
+    let verified = objects(
+        &workshop
+            .run(&format!("{own} --verify"))
+            .with_status(0)
+            .stdout,
+    );
+    assert_eq!(verified.last().unwrap()["verified"], true);
+    workshop.change("config/rigs/thermostat/rack.toml", "40.06", "41.56");
+    let failed = workshop
+        .run(&format!("{own} --verify"))
+        .with_status(1)
+        .stdout
+        .clone();
+    assert_eq!(objects(&failed).last().unwrap()["verified"], false);
+}
+
+/// A fault of the chamber, and the alarms of which one must come first.
+const FAULTS: [(&str, &[&str]); 14] = [
+    ("limiter", &["limiter_tripped"]),
+    ("control_open", &["thermometer_broken"]),
+    ("control_short", &["thermometer_broken", "thermometer_jump"]),
+    (
+        "control_stuck",
+        &["thermometers_differ", "thermometer_stuck"],
+    ),
+    ("reference_open", &["thermometer_broken"]),
+    (
+        "reference_short",
+        &["thermometer_broken", "thermometer_jump"],
+    ),
+    (
+        "reference_stuck",
+        &["thermometers_differ", "thermometer_stuck"],
+    ),
+    (
+        "heater_open",
+        &[
+            "energy_balance",
+            "ramp_not_reached",
+            "heating_not_identified",
+        ],
+    ),
+    (
+        "ssr_stuck",
+        &[
+            "heat_without_command",
+            "over_set_point",
+            "energy_balance",
+            "heating_not_identified",
+        ],
+    ),
+    ("fan_stopped", &["airflow_lost"]),
+    ("mains_off", &["mains_lost"]),
+    ("door", &["door_open"]),
+    ("estop", &["emergency_stop"]),
+    ("silence=rtd", &["bus_trouble"]),
+];
+
+#[test]
+fn a_fault_at_any_instant_raises_its_alarm_and_fails_no_part() {
+    let mut dice = 20_261_128_u64;
+    let mut drawn = || {
+        dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        // From the first heat of the identification to the first fall.
+        420 + (dice >> 33) % 1_100
+    };
+    let all = FAULTS.map(|(fault, alarms)| (fault, alarms, drawn()));
+    let (first, second) = all.split_at(all.len() / 2);
+    std::thread::scope(|scope| {
+        scope.spawn(|| second.iter().for_each(strike));
+        first.iter().for_each(strike);
+    });
+}
+
+/// Runs a batch under a fault and checks its first alarm and its parts.
+fn strike((fault, alarms, at_s): &(&str, &[&str], u64)) {
+    let struck = match fault.contains('=') {
+        true => format!("{fault}@{at_s}"),
+        false => format!("{fault}={at_s}"),
+    };
+    let workshop = Workshop::new(&format!("thermostat-{}", fault.replace('=', "-")));
+    let said = workshop.run(&format!(
+        "{RUN} --lot A --count 3 --seed 1 --fault {struck}"
+    ));
+    let rows = objects(&said.with_status(3).stdout);
+    let mut parts = rows.iter().filter(|it| it["type"] == "part");
+    assert!(
+        parts.all(|it| it["verdict"] == "void"),
+        "{struck}: {rows:?}"
+    );
+    let raised = workshop.texts("SELECT code FROM alarm ORDER BY id");
+    let first = raised.iter().find(|it| *it != "sockets_open");
+    let known = first.is_some_and(|it| alarms.contains(&it.as_str()));
+    assert!(known, "{struck}: {raised:?}");
+}
