@@ -295,13 +295,13 @@ impl Archive {
             .doing("counting a lot over its runs")
     }
 
-    /// Returns the reference checks of the selected runs in order of time.
+    /// Returns the reference checks of the selected runs, the oldest first.
     pub fn reference_checks(&self, filter: &Filter) -> Result<Vec<ReferenceCheck>> {
         let mut select = filter.runs();
         select.sql = format!(
             "SELECT run.number, golden_check.at_us, passed, text, alarm, suspect_since_us
              FROM golden_check JOIN run ON run.id = golden_check.run_id
-             WHERE run.id IN ({}) ORDER BY golden_check.at_us, golden_check.id",
+             WHERE run.id IN ({}) ORDER BY golden_check.id",
             select.sql
         );
         select

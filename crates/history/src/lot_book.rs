@@ -34,10 +34,10 @@ pub struct LotEntry {
 
 /// Selects the lots, without imports, with the number of their runs and the cause that ended the last run; if the cause
 /// is an alarm, with the arguments of its text.
-const BOOK: &str = "SELECT lot.name, count(*), max(run.opened_at_us), run_end.cause, run_end.cause_text,
+const BOOK: &str = "SELECT lot.name, count(*), run.opened_at_us, max(run.id), run_end.cause, run_end.cause_text,
     (SELECT args FROM alarm WHERE alarm.run_id = run.id AND alarm.code = run_end.cause ORDER BY alarm.id DESC LIMIT 1)
     FROM run JOIN lot ON lot.id = run.lot_id LEFT JOIN run_end ON run_end.run_id = run.id WHERE run.source <> 'import'
-    GROUP BY lot.id ORDER BY 3 DESC, lot.id DESC LIMIT ?1 OFFSET ?2";
+    GROUP BY lot.id ORDER BY 4 DESC LIMIT ?1 OFFSET ?2";
 
 /// Returns the Chinese text of a cause: of an alarm with these arguments, or of the end of a run.
 fn chinese(cause: &str, args: Args) -> Option<String> {
@@ -53,10 +53,10 @@ impl Archive {
             .prepare(BOOK)
             .and_then(|mut it| {
                 let read = |row: &rusqlite::Row<'_>| {
-                    let cause: Option<String> = row.get(3)?;
-                    let args = alarms::args(row.get(5)?);
+                    let cause: Option<String> = row.get(4)?;
+                    let args = alarms::args(row.get(6)?);
                     let zh = cause.as_deref().and_then(|it| chinese(it, args));
-                    let causes = [cause, row.get(4)?, zh];
+                    let causes = [cause, row.get(5)?, zh];
                     Ok((row.get(0)?, row.get(1)?, row.get(2)?, causes))
                 };
                 it.query_map([limit, offset], read)?.collect()

@@ -90,7 +90,7 @@ pub(super) const COUNTS: &str =
     "SELECT kind, verdict, bin, count(*) FROM part WHERE run_id = ?1 GROUP BY 1, 2, 3";
 
 impl Archive {
-    /// Returns the runs in order of their start; lot, recipe and run of the filter select them.
+    /// Returns the runs in the order in which the history received them, whatever the clock said; lot, recipe and run of the filter select them.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
         let mut select = filter.runs();
         select.sql = format!(
@@ -100,7 +100,7 @@ impl Archive {
                run_end.ended, run_end.cause, run_end.cause_text
              FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
                LEFT JOIN run_end ON run_end.run_id = run.id
-             WHERE run.id IN ({}) ORDER BY run.opened_at_us, run.id",
+             WHERE run.id IN ({}) ORDER BY run.id",
             select.sql
         );
         let lots = select.rows(&self.connection, |row| {

@@ -146,7 +146,7 @@ impl Archive {
         };
         let select = "SELECT at_us, who, role, what, what ->> '$.revision' FROM ordered
             WHERE refused IS NULL AND what ->> '$.order' IN ('revise', 'new_recipe') AND what ->> '$.recipe' = ?1
-            ORDER BY at_us DESC";
+            ORDER BY id DESC";
         (self.connection.prepare(select))
             .and_then(|mut statement| statement.query_map([recipe], read)?.collect())
             .doing("reading revisions")

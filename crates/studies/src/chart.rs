@@ -12,8 +12,10 @@ pub struct Chart {
     pub title: String,
     /// Unit behind every number.
     pub unit: &'static str,
-    /// Value at the left end of the axis.
+    /// Value at the left end of the axis; above 0 on a logarithmic axis.
     pub from: f64,
+    /// Whether the axis is logarithmic.
+    pub is_logarithmic: bool,
     /// Values at which a vertical line crosses all bars, such as limits.
     pub marks: Vec<f64>,
     /// Label and value, from top to bottom; `None` draws no bar.
@@ -26,6 +28,8 @@ const PLOT: f64 = 480.0;
 const NUMBER: f64 = 100.0;
 const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
+/// Ratio of the greatest to the least value above which short bars of a linear axis no longer differ to the eye.
+const WIDE_SPAN: f64 = 30.0;
 /// Height of one line of the numbers below the axis, px.
 const NUMBER_LINE: f64 = 15.0;
 
@@ -41,6 +45,7 @@ impl Chart {
             title: title.into(),
             unit,
             from: 0.0,
+            is_logarithmic: false,
             marks,
             bars: bars.into_iter().collect(),
         }
@@ -57,18 +62,32 @@ impl Chart {
         Self::new(title, unit, marks, bars)
     }
 
-    /// Returns the value at the right end of the axis: 2 % beyond the greatest value or mark.
+    /// Returns the chart with a logarithmic axis when its values and marks are positive and the greatest exceeds
+    /// [`WIDE_SPAN`] times the least; otherwise returns it unchanged.
+    pub fn with_axis_of_its_span(mut self) -> Self {
+        let least = self.values().fold(f64::INFINITY, f64::min);
+        let greatest = self.values().fold(0.0, f64::max);
+        if least > 0.0 && greatest > WIDE_SPAN * least {
+            self.from = 10.0_f64.powf(least.log10().floor());
+            self.is_logarithmic = true;
+        }
+        self
+    }
+
+    /// Returns the finite values of bars and marks.
+    fn values(&self) -> impl Iterator<Item = f64> {
+        let bars = self.bars.iter().filter_map(|(_, value)| *value);
+        let all = bars.chain(self.marks.iter().copied());
+        all.filter(|it| it.is_finite())
+    }
+
+    /// Returns the value at the right end of the axis: 2 % beyond the greatest value or mark, 10 % on a logarithmic axis.
     fn to(&self) -> f64 {
-        let all = self
-            .bars
-            .iter()
-            .filter_map(|(_, value)| *value)
-            .chain(self.marks.iter().copied());
-        let greatest = all.filter(|it| it.is_finite()).fold(self.from, f64::max);
-        if greatest > self.from {
-            greatest + 0.02 * (greatest - self.from)
-        } else {
-            self.from + 1.0
+        let greatest = self.values().fold(self.from, f64::max);
+        match greatest > self.from {
+            true if self.is_logarithmic => 1.1 * greatest,
+            true => greatest + 0.02 * (greatest - self.from),
+            false => self.from + 1.0,
         }
     }
 
@@ -80,7 +99,11 @@ impl Chart {
 
     /// Returns the x coordinate of a value, clamped to the plot.
     fn x(&self, value: f64) -> f64 {
-        self.left() + PLOT * ((value - self.from) / (self.to() - self.from)).clamp(0.0, 1.0)
+        let share = match self.is_logarithmic {
+            true => (value / self.from).ln() / (self.to() / self.from).ln(),
+            false => (value - self.from) / (self.to() - self.from),
+        };
+        self.left() + PLOT * share.clamp(0.0, 1.0)
     }
 
     /// Returns the chart as an SVG file.

@@ -97,7 +97,7 @@ pub fn report(
     let about = order.about();
     let title = format!("rms error of a method: {about}");
     let unit = rows.first().map_or("", |row| row.unit);
-    let chart = Chart::of(title, unit, marks, rows);
+    let chart = Chart::of(title, unit, marks, rows).with_axis_of_its_span();
     let about = format!("{about}, instruments without errors unless a row says so");
     Report::new(study, about, groups, chart)
 }

@@ -71,3 +71,5 @@ CREATE TRIGGER outbox_calibration AFTER INSERT ON calibration BEGIN
   INSERT INTO outbox (target_id, kind, row_id) SELECT id, 'calibration', NEW.id FROM target; END;
 CREATE TRIGGER outbox_calibration_change AFTER UPDATE ON calibration BEGIN
   INSERT INTO outbox (target_id, kind, row_id) SELECT id, 'calibration', NEW.id FROM target; END;
+
+CREATE INDEX ordered_run ON ordered (run_id); -- the scans of a run, whatever the clock said meanwhile

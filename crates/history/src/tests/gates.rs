@@ -387,6 +387,25 @@ fn the_book_of_lots_counts_runs_without_imports() {
 }
 
 #[test]
+fn a_clock_set_back_keeps_the_order_of_runs() {
+    let file = File::new();
+    let mut store = file.store();
+    for (name, opened_at_us) in [("A", 3_000), ("B", 1_000)] {
+        let run = LotRecord {
+            opened_at_us,
+            ..lot(name)
+        };
+        store.begin_lot(&run).unwrap();
+        store.close_lot(name, opened_at_us).unwrap();
+    }
+    let archive = file.archive();
+    let runs = archive.lots(&Filter::default()).unwrap();
+    let book = archive.lot_book(10, 0).unwrap();
+    assert_eq!((runs[0].lot.as_str(), runs[1].lot.as_str()), ("A", "B"));
+    assert_eq!((book[0].lot.as_str(), book[1].lot.as_str()), ("B", "A"));
+}
+
+#[test]
 fn a_repeated_decision_is_refused() {
     for decision in Decision::ALL {
         let again = decision.refusal(decision.becomes());

@@ -98,6 +98,30 @@ fn a_hold_of_an_older_file_keeps_its_text() {
 }
 
 #[test]
+fn a_held_lot_stays_held_through_every_upgrade() {
+    for schema in 3..MIGRATIONS.len() {
+        let file = File::new();
+        of_schema(&file, schema);
+        let held = "INSERT INTO lot_state (lot_id, state, why, since_us) VALUES (1, 'held', 'wrong label', 8)";
+        file.by_hand().execute_batch(held).unwrap();
+        let mut store = file.store();
+        store.cut_off(false, 9).unwrap();
+        let standing = || file.archive().standing("批次").unwrap().unwrap();
+        assert_eq!(standing().state, LotState::Held, "schema {schema}");
+        assert_eq!(standing().why.as_deref(), Some("wrong label"));
+        assert_eq!(file.archive().count_parts(&Filter::default()).unwrap(), 2);
+        let released = LotStateRecord {
+            lot: "批次".into(),
+            state: LotState::Open,
+            why: None,
+            at_us: 10,
+        };
+        store.record(&[Row::LotState(released)]).unwrap();
+        assert_eq!(standing().state, LotState::Open, "schema {schema}");
+    }
+}
+
+#[test]
 fn rows_of_an_older_file_name_its_rig() {
     let of = "INSERT INTO run (id, lot_id, number, recipe_id, opened_at_us, source, written_by)
         VALUES (2, 1, 2, 1, 5, 'simulated', 'relayrig of old');";

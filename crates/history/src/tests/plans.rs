@@ -204,6 +204,7 @@ fn rows_of_a_part_are_found_by_key() {
         lots::COUNTS,
         values::LIMITS,
         series::PACKED,
+        crate::scans::SCANS,
     ];
     let golden = filter::reference_part();
     let all = fixed.into_iter().chain([golden.as_str()]);

@@ -13,7 +13,8 @@ fn a_run_names_the_scans_whose_parts_never_came() {
         let order = |what: &str, who: &str, refused: Option<&'static str>| {
             Row::Order(OrderRecord {
                 lot: Some("A".into()),
-                at_us: 2_000_000,
+                // Before the run was opened: the clock was set back since.
+                at_us: 500_000,
                 who: who.into(),
                 what: what.into(),
                 refused: refused.map(|code| Message::new("refusal", code)),

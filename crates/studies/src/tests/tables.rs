@@ -96,6 +96,7 @@ fn a_chart_keeps_bars_inside_and_escapes_its_text() {
             ("top".into(), Some(100.0)),
             ("none".into(), None),
         ],
+        ..Chart::default()
     };
     let svg = chart.svg();
     assert!(svg.contains("a &lt; b") && svg.ends_with("</svg>\n"));
@@ -104,6 +105,18 @@ fn a_chart_keeps_bars_inside_and_escapes_its_text() {
         "a bar below the left end has no length: {svg}"
     );
     assert_eq!(svg.matches("fill=\"#4a7ba6\"").count(), 2);
+}
+
+#[test]
+fn a_wide_span_of_values_gets_a_logarithmic_axis() {
+    let bars = |greatest| [("a".to_owned(), Some(0.02)), ("b".to_owned(), Some(greatest))];
+    let chart = |greatest| Chart::new("t", "ms", vec![0.1], bars(greatest)).with_axis_of_its_span();
+    assert!(!chart(0.5).is_logarithmic);
+    let wide = chart(20.0);
+    assert!(wide.is_logarithmic && wide.from == 0.01);
+    // 0.02 lies log 2 / log 2200 = 9 % from the left end of an axis from 0.01 to 22.
+    let width = 480.0 * 2.0_f64.ln() / 2200.0_f64.ln();
+    assert!(wide.svg().contains(&format!("width=\"{width:.1}\"")));
 }
 
 #[test]
