@@ -115,17 +115,67 @@ impl Identification {
         }))
     }
 
-    fn figures(&self) -> Result<Identified, IdentifyError> {
+    /// Returns the standard uncertainties of the figures of a run that is over.
+    ///
+    /// Those of gain, time constant, delay and slope follow from the misfit of the model. Loss, fan and vent come from
+    /// slopes of the reading over stretches of some minutes; the noise of the reading and the uncertainty of the slope of
+    /// the model make theirs.
+    pub fn doubt(&self, found: &Identified) -> Identified {
+        let (response, ..) = self.response();
+        let parts = fit::TwoPart {
+            gain_k: found.gain_k,
+            time_constant_s: found.time_constant_s,
+            delay_s: found.delay_s,
+            slope_k_per_s: found.slope_k_per_s,
+        };
+        let (parts, early) = (
+            fit::two_part_doubt(&response, &parts),
+            fit::first_order_doubt(&response[..=FIRST_ORDER_S], &found.first_order),
+        );
+        let share = parts.slope_k_per_s / found.slope_k_per_s;
+        let drift = self.noise_k() * (12.0 / (DRIFT_S as f64).powi(3)).sqrt();
+        let power = std::f64::consts::SQRT_2 * drift / found.slope_k_per_s;
+        let excess_k = (self.coast_excess_k()).abs().max(1.0);
+        Identified {
+            gain_k: parts.gain_k,
+            time_constant_s: parts.time_constant_s,
+            delay_s: parts.delay_s,
+            slope_k_per_s: parts.slope_k_per_s,
+            loss_per_k: (power / excess_k).hypot(found.loss_per_k * share),
+            fan: power.hypot(found.fan * share),
+            vent_per_k: found.vent_per_k * share.hypot(parts.gain_k / found.gain_k),
+            first_order: early,
+        }
+    }
+
+    /// Returns the noise of a reading, K: from the differences of readings at rest.
+    fn noise_k(&self) -> f64 {
+        let rest = &self.readings_c[..LENGTHS_S[0]];
+        let squares: Vec<f64> = rest.windows(2).map(|it| (it[1] - it[0]).powi(2)).collect();
+        (mean(&squares) / 2.0).sqrt()
+    }
+
+    /// Returns by how much the coast is hotter than the rest, K.
+    fn coast_excess_k(&self) -> f64 {
+        let end: usize = LENGTHS_S[..3].iter().sum();
+        let rest = LENGTHS_S[0];
+        mean(&self.readings_c[end - DRIFT_S..=end]) - mean(&self.readings_c[rest - 4..=rest])
+    }
+
+    /// Returns the response to the step, K per unit of power, the drift before it, K/s, and the temperature at the step, C.
+    fn response(&self) -> (Vec<f64>, f64, f64) {
         let [rest, heat, ..] = LENGTHS_S;
         let drift = slope(&self.readings_c[rest - DRIFT_S..=rest]);
         let start_c = mean(&self.readings_c[rest - 4..=rest]) + 2.0 * drift;
         let rise =
             |(second, found): (usize, &f64)| (found - start_c - drift * second as f64) / self.power;
-        let response: Vec<f64> = self.readings_c[rest..=rest + heat]
-            .iter()
-            .enumerate()
-            .map(rise)
-            .collect();
+        let heated = self.readings_c[rest..=rest + heat].iter().enumerate();
+        (heated.map(rise).collect(), drift, start_c)
+    }
+
+    fn figures(&self) -> Result<Identified, IdentifyError> {
+        let [rest, heat, ..] = LENGTHS_S;
+        let (response, drift, start_c) = self.response();
         let found_k = response.last().copied().unwrap_or(0.0) * self.power;
         if found_k < LEAST_RISE_K {
             return Err(IdentifyError::NoRise {

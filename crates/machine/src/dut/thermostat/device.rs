@@ -4,9 +4,11 @@ use super::certificate::Certificate;
 use super::measure::Test;
 use super::points::Points;
 use super::recipe::ThermostatRecipe;
+use super::response::StatedResponse;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::batch::{BatchOrder, BatchTest};
 use crate::dut::device::{DeviceUnderTest, TestOrder};
+use crate::dut::experiment::Experiment;
 use crate::dut::record::Own;
 use crate::dut::{Procedure, Recipe, TestRecord};
 use crate::instrument::act::Act;
@@ -54,6 +56,8 @@ pub struct Device {
     pub lesson: Option<Arc<Lesson>>,
     /// Certificate of thermometer chain and sockets; `None` on a rig without calibration.
     pub certificate: Option<Arc<Certificate>>,
+    /// Response of the chamber that the plant states; `None` when the first batch identifies it.
+    pub stated: Option<StatedResponse>,
 }
 
 impl Device {
@@ -71,7 +75,15 @@ impl Device {
             accuracy,
             lesson: None,
             certificate: None,
+            stated: None,
         }
+    }
+
+    /// Returns the response of the chamber, from an earlier batch of the run or as the plant states it; `None` before the
+    /// first batch of a run has identified it.
+    pub fn response(&self) -> Option<Identified> {
+        let of_batch = self.lesson.as_ref().map(|it| it.chamber);
+        of_batch.or_else(|| self.stated.map(|it| it.identified()))
     }
 
     /// Returns the device with this certificate.
@@ -103,6 +115,10 @@ impl DeviceUnderTest for Device {
 
     fn begin_batch(&self, order: &BatchOrder, now: RigTime) -> Box<dyn BatchTest> {
         Box::new(Test::begin(self.clone(), order, now))
+    }
+
+    fn begin_experiment(&self, what: Experiment, now: RigTime) -> Box<dyn BatchTest> {
+        Box::new(Test::experiment(self.clone(), what, now))
     }
 
     fn cooling(&self, on: bool) -> Vec<Act> {

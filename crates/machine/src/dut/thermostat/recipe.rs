@@ -124,7 +124,10 @@ impl KindRecipe for ThermostatRecipe {
             Calibration::EmRelay(_) => None,
         });
         let device = super::Device::new(recipe, self, points, *rig.accuracy);
-        let device = device.calibrated(certificate);
+        let device = super::Device {
+            stated: rig.certificate.and_then(|it| it.chamber),
+            ..device.calibrated(certificate)
+        };
         Ok(Device::Thermostat(Box::new(device)))
     }
 

@@ -4,6 +4,8 @@ use super::super::Finding;
 use super::super::device::{Device, Lesson};
 use super::super::recipe::Control;
 use super::contacts::Events;
+use super::trial::Trial;
+use crate::dut::experiment::Experiment;
 use chamber::control::increment::{Increment, Rules};
 use chamber::control::pid::Pid;
 use chamber::control::scheduled::{FuzzyPid, Symmetry};
@@ -50,14 +52,16 @@ pub enum Work {
     Rest(Identified, u32),
     /// Passes through the windows.
     Passes(Box<Passes>),
+    /// What follows the identification of an experiment without parts.
+    Trial(Box<Trial>),
 }
 
 impl Work {
-    /// Starts with an identification, unless an earlier batch of the run has made one. Then starts with a rest, because
-    /// the chamber still gives off heat of that batch.
-    pub fn new(device: &Device, ambient_c: f64, operate_c: f64) -> Self {
-        match &device.lesson {
-            Some(lesson) => Self::Rest(lesson.chamber, REST_S),
+    /// Starts with an identification, unless the response of the chamber is known. Then starts with a rest, because the
+    /// chamber may still give off heat of an earlier batch. An experiment always identifies.
+    pub fn new(device: &Device, is_experiment: bool, ambient_c: f64, operate_c: f64) -> Self {
+        match device.response().filter(|_| !is_experiment) {
+            Some(known) => Self::Rest(known, REST_S),
             None => {
                 let run = Identification::new(STEP, ambient_c, operate_c);
                 Self::Identification(Box::new(run))
@@ -72,16 +76,21 @@ impl Work {
     pub fn step(
         &mut self,
         device: &Device,
+        experiment: Option<Experiment>,
         seen: &Seen,
-        record: &Record,
-        events: &dyn Fn() -> Vec<Events>,
+        (record, events): (&Record, &dyn Fn() -> Vec<Events>),
     ) -> Result<Option<Command>, Finding> {
         let control_c = seen.control_c.ok_or(Finding::SensorBroken)?;
         match self {
             Self::Identification(run) => match run.step(control_c) {
                 Ok(Step::Go(command)) => Ok(Some(command)),
                 Ok(Step::Done(found)) => {
-                    *self = Self::Rest(found, REST_S);
+                    let both = [found, run.doubt(&found)];
+                    let trial = |what| Trial::new(device, what, both, seen.ambient_c);
+                    *self = match experiment {
+                        Some(what) => Self::Trial(Box::new(trial(what))),
+                        None => Self::Rest(found, REST_S),
+                    };
                     Ok(Some(Command::OFF))
                 }
                 Err(_) => Err(Finding::NotIdentified),
@@ -96,6 +105,15 @@ impl Work {
                 Ok(Some(Command::OFF))
             }
             Self::Passes(passes) => passes.step(device, seen, control_c, record, events),
+            Self::Trial(trial) => trial.step(seen, control_c),
+        }
+    }
+
+    /// Returns the set point of this second, C; `None` before the passes.
+    pub fn set_c(&self) -> Option<f64> {
+        match self {
+            Self::Identification(_) | Self::Rest(..) | Self::Trial(_) => None,
+            Self::Passes(passes) => Some(passes.program.set_point().value_c),
         }
     }
 
@@ -105,6 +123,7 @@ impl Work {
             Self::Identification(_) => None,
             Self::Rest(found, _) => Some(*found),
             Self::Passes(passes) => Some(passes.chamber),
+            Self::Trial(trial) => Some(trial.chamber()),
         }
     }
 }
@@ -146,13 +165,19 @@ impl Passes {
             ambient_c,
             passes: all.len(),
             program: Program::new(control_c, all, lag_s, UNLOAD_C),
-            controller: controller(thermostat.test.control, found),
+            controller: controller(device, found),
             watch: Watch::new(found),
             slope: SlidingSlope::default(),
             stayed_s: 0,
             lag_s,
             expected,
         }
+    }
+
+    /// Returns number and count of the passes, from 1; `None` after the last one.
+    pub fn progress(&self) -> Option<(usize, usize)> {
+        let present = self.program.pass() + 1;
+        (present <= self.passes).then_some((present, self.passes))
     }
 
     /// Returns true in the rise of the last pass.
@@ -249,9 +274,10 @@ pub fn shown(record: &Record, events: &[Events], lag_s: f64, expected: [Window; 
     ]
 }
 
-fn controller(control: Control, chamber: &Identified) -> Controller {
-    let tuned = Settings::simc(&chamber.first_order, 1.0);
-    let law = match control {
+fn controller(device: &Device, chamber: &Identified) -> Controller {
+    let stated = device.stated.and_then(|it| it.settings());
+    let tuned = stated.unwrap_or_else(|| Settings::simc(&chamber.first_order, 1.0));
+    let law = match device.thermostat.test.control {
         Control::Pid => Law::Pid(Pid::new(tuned)),
         Control::Fuzzy => Law::Fuzzy(Increment::new(Rules::FURNACE)),
         Control::FuzzyPid => Law::FuzzyPid(FuzzyPid::new(tuned, Symmetry::Even)),
