@@ -1,6 +1,6 @@
 //! A recipe of temperature relays on a rig, with what its batches have revealed about chamber and lot.
 
-use super::certificate::Certificate;
+use super::certificate::{Calibration, Certificate};
 use super::measure::Test;
 use super::points::Points;
 use super::recipe::ThermostatRecipe;
@@ -56,6 +56,8 @@ pub struct Device {
     pub lesson: Option<Arc<Lesson>>,
     /// Certificate of thermometer chain and sockets; `None` on a rig without calibration.
     pub certificate: Option<Arc<Certificate>>,
+    /// Instant at which the certificate runs out, microseconds since 1970 UTC; `None` without one.
+    pub due_at_us: Option<i64>,
     /// Response of the chamber that the plant states; `None` when the first batch identifies it.
     pub stated: Option<StatedResponse>,
 }
@@ -75,6 +77,7 @@ impl Device {
             accuracy,
             lesson: None,
             certificate: None,
+            due_at_us: None,
             stated: None,
         }
     }
@@ -86,11 +89,12 @@ impl Device {
         of_batch.or_else(|| self.stated.map(|it| it.identified()))
     }
 
-    /// Returns the device with this certificate.
-    pub fn calibrated(self, certificate: Option<Certificate>) -> Self {
-        let certificate = certificate.map(Arc::new);
+    /// Returns the device with this calibration.
+    pub fn calibrated(self, calibration: Option<Calibration>) -> Self {
+        let due_at_us = calibration.as_ref().map(|it| it.facts().due_at_us);
         Self {
-            certificate,
+            due_at_us,
+            certificate: calibration.map(|it| Arc::new(it.certificate)),
             ..self
         }
     }
@@ -129,6 +133,10 @@ impl DeviceUnderTest for Device {
 
     fn air_thermometers(&self) -> Vec<Thermometer> {
         vec![self.points.reference, self.points.control]
+    }
+
+    fn due_at_us(&self) -> Option<i64> {
+        self.due_at_us
     }
 
     fn learn(&mut self, record: &TestRecord, _pass: bool) {

@@ -43,13 +43,21 @@ pub struct Seen {
     pub waiting: Waiting,
 }
 
+/// What is known about the chamber before the passes.
+#[derive(Debug, Clone, Copy)]
+pub struct Known {
+    chamber: Identified,
+    /// Temperature of the room, C.
+    ambient_c: f64,
+}
+
 /// What the chamber does at present.
 #[derive(Debug)]
 pub enum Work {
     /// Identification of the chamber, with a step of the heater.
     Identification(Box<Identification>),
     /// Rest with the fan only, for the remaining seconds.
-    Rest(Identified, u32),
+    Rest(Known, u32),
     /// Passes through the windows.
     Passes(Box<Passes>),
     /// What follows the identification of an experiment without parts.
@@ -61,7 +69,7 @@ impl Work {
     /// chamber may still give off heat of an earlier batch. An experiment always identifies.
     pub fn new(device: &Device, is_experiment: bool, ambient_c: f64, operate_c: f64) -> Self {
         match device.response().filter(|_| !is_experiment) {
-            Some(known) => Self::Rest(known, REST_S),
+            Some(chamber) => Self::Rest(Known { chamber, ambient_c }, REST_S),
             None => {
                 let run = Identification::new(STEP, ambient_c, operate_c);
                 Self::Identification(Box::new(run))
@@ -86,17 +94,24 @@ impl Work {
                 Ok(Step::Go(command)) => Ok(Some(command)),
                 Ok(Step::Done(found)) => {
                     let both = [found, run.doubt(&found)];
-                    let trial = |what| Trial::new(device, what, both, seen.ambient_c);
+                    let ambient_c = run.ambient_c();
+                    let trial = |what| Trial::new(device, what, both, ambient_c);
                     *self = match experiment {
                         Some(what) => Self::Trial(Box::new(trial(what))),
-                        None => Self::Rest(found, REST_S),
+                        None => Self::Rest(
+                            Known {
+                                chamber: found,
+                                ambient_c,
+                            },
+                            REST_S,
+                        ),
                     };
                     Ok(Some(Command::OFF))
                 }
                 Err(_) => Err(Finding::NotIdentified),
             },
-            Self::Rest(found, 0) => {
-                let passes = Passes::new(device, found, control_c, seen.ambient_c);
+            Self::Rest(known, 0) => {
+                let passes = Passes::new(device, known, control_c);
                 *self = Self::Passes(Box::new(passes));
                 Ok(Some(Command::OFF))
             }
@@ -117,11 +132,21 @@ impl Work {
         }
     }
 
+    /// Returns the temperature of the room, C, once the response of the chamber is known; `None` before.
+    pub fn ambient_c(&self) -> Option<f64> {
+        match self {
+            Self::Identification(_) => None,
+            Self::Rest(known, _) => Some(known.ambient_c),
+            Self::Passes(passes) => Some(passes.ambient_c),
+            Self::Trial(trial) => Some(trial.ambient_c()),
+        }
+    }
+
     /// Returns the identified response of the chamber; `None` until it is known.
     pub fn chamber(&self) -> Option<Identified> {
         match self {
             Self::Identification(_) => None,
-            Self::Rest(found, _) => Some(*found),
+            Self::Rest(known, _) => Some(known.chamber),
             Self::Passes(passes) => Some(passes.chamber),
             Self::Trial(trial) => Some(trial.chamber()),
         }
@@ -146,7 +171,11 @@ pub struct Passes {
 }
 
 impl Passes {
-    fn new(device: &Device, found: &Identified, control_c: f64, ambient_c: f64) -> Self {
+    fn new(device: &Device, known: &Known, control_c: f64) -> Self {
+        let Known {
+            chamber: found,
+            ambient_c,
+        } = known;
         let thermostat = &device.thermostat;
         let expected = thermostat
             .windows(&device.recipe.limits)
@@ -162,7 +191,7 @@ impl Passes {
             .map_or(thermostat.part.lag_s, |it| it.seconds);
         Self {
             chamber: *found,
-            ambient_c,
+            ambient_c: *ambient_c,
             passes: all.len(),
             program: Program::new(control_c, all, lag_s, UNLOAD_C),
             controller: controller(device, found),

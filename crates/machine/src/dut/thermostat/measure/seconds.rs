@@ -238,6 +238,7 @@ impl Seconds {
         };
         let recorded = (&self.record, &events as &dyn Fn() -> Vec<Events>);
         let next = work.step(device, self.experiment, &seen, recorded)?;
+        self.ambient_c = work.ambient_c().unwrap_or(self.ambient_c);
         self.command = next.unwrap_or(Command::OFF);
         Ok(next)
     }

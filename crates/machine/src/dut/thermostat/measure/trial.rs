@@ -22,6 +22,7 @@ const LEAST_HOLDING: f64 = 0.02;
 pub struct Trial {
     found: Identified,
     doubt: Identified,
+    ambient_c: f64,
     tuning: Option<Tuning>,
     oscillation: Option<Oscillation>,
 }
@@ -47,6 +48,7 @@ impl Trial {
         Self {
             found,
             doubt,
+            ambient_c,
             tuning: (what == Experiment::Tune).then(|| Tuning::new(device, &found, ambient_c)),
             oscillation: None,
         }
@@ -67,6 +69,11 @@ impl Trial {
                 Ok(None)
             }
         }
+    }
+
+    /// Returns the temperature of the room, C.
+    pub fn ambient_c(&self) -> f64 {
+        self.ambient_c
     }
 
     /// Returns the identified response of the chamber.
