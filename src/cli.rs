@@ -9,6 +9,7 @@ pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
 pub mod doctor;
+pub mod experiment;
 #[cfg(feature = "fleet")]
 pub mod fleet;
 pub mod history;
@@ -86,6 +87,8 @@ pub enum Command {
     Run(Box<run::RunArgs>),
     /// Calibrate a rig by its standards and reference parts, or verify its calibration
     Calibrate(calibrate::CalibrateArgs),
+    /// How a chamber answers its heater, and settings of its controller
+    Chamber(experiment::ChamberArgs),
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
     Sim(sim::SimArgs),
@@ -177,6 +180,7 @@ impl Cli {
             Command::Serve(args) => serve::run(&files, &args, None),
             Command::Run(args) => run::run(&files, &args),
             Command::Calibrate(args) => calibrate::run(&files, &args),
+            Command::Chamber(args) => experiment::run(&files, &args),
             #[cfg(feature = "sim")]
             Command::Sim(args) => sim::run(config, &args),
             #[cfg(feature = "sim")]

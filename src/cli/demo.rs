@@ -23,7 +23,7 @@ pub struct DemoArgs {
     /// Rig to simulate, of those inside the program
     #[arg(long, value_name = "NAME", default_value = "jzc-22f", value_parser = rig::built_in(), conflicts_with = "config")]
     pub rig: String,
-    /// Recipe of the lot [default: jzc-22f-012 or ssr-dc-60v-3a where the rig has it, else its first one]
+    /// Recipe of the lot [default: jzc-22f-012, ssr-dc-60v-3a or thermostat-ksd9700 where the rig has it, else its first one]
     #[arg(long, value_name = "NAME")]
     pub recipe: Option<String>,
     /// Where the page listens.

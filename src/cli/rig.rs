@@ -48,11 +48,10 @@ pub fn built_in() -> PossibleValuesParser {
     PossibleValuesParser::new(Folder::built_in_rigs())
 }
 
-/// Returns the recipe that a command takes without `--recipe`: that of the default relay or of the DC
-/// solid-state relay, or the first one of a rig with neither.
-#[cfg(feature = "sim")]
+/// Returns the recipe that a command takes without `--recipe`: that of the default relay, of the DC solid-state relay or
+/// of the quick temperature relay, or the first one of a rig with none of them.
 pub fn usual_recipe(config: &Folder) -> String {
-    const USUAL: [&str; 2] = ["jzc-22f-012", "ssr-dc-60v-3a"];
+    const USUAL: [&str; 3] = ["jzc-22f-012", "ssr-dc-60v-3a", "thermostat-ksd9700"];
     let names = config::recipe_names(config);
     let usual = USUAL
         .into_iter()

@@ -43,21 +43,55 @@ fn a_batch_of_forty_agrees_with_the_truth() {
             "{part}\n{own}"
         );
     }
-    // Parts of one lot share the errors of its rig, so that the three quantities count together.
     let keys = [
         "operate_temperature_c",
         "reset_temperature_c",
         "differential_k",
     ];
-    let errors: Vec<f64> = keys
-        .iter()
-        .flat_map(|key| errors(&parts, &truth, key))
-        .collect();
-    let covered = errors.iter().filter(|it| it.abs() <= 1.0).count();
-    assert!(
-        errors.len() >= 90 && covered * 100 >= errors.len() * 93,
-        "{errors:?}"
-    );
+    for key in keys {
+        let errors = errors(&parts, &truth, key);
+        let covered = errors.iter().filter(|it| it.abs() <= 1.0).count();
+        let least = least_covered(errors.len());
+        assert!(
+            errors.len() >= 30 && covered >= least,
+            "{key}: {covered} of {}, expected {least} or more: {errors:?}",
+            errors.len()
+        );
+        let squares = errors.iter().map(|it| (2.0 * it).powi(2)).sum::<f64>();
+        let ratio = squares / errors.len() as f64;
+        let [low, high] = chi_squared(errors.len());
+        assert!((low..=high).contains(&ratio), "{key}: {ratio}, expected {low} to {high}");
+    }
+}
+
+/// Returns the least number of values out of `all` whose U must cover the truth: an honest U, which covers 93 % or more,
+/// falls below it in less than one lot of a hundred.
+fn least_covered(all: usize) -> usize {
+    let (mut chance, mut below) = (0.93_f64.powi(all as i32), 1.0);
+    for missed in 0..=all {
+        below -= chance;
+        if below < 0.01 {
+            return all - missed;
+        }
+        chance *= (all - missed) as f64 / (missed + 1) as f64 * 0.07 / 0.93;
+    }
+    0
+}
+
+/// Returns the range of the mean square of `all` normal values, three standard deviations to either side (Wilson and
+/// Hilferty): a mean square of errors in standard uncertainties outside of it shows a U that is stated too small or too
+/// large.
+fn chi_squared(all: usize) -> [f64; 2] {
+    let share = 2.0 / (9.0 * all as f64);
+    [-3.0, 3.0].map(|z| (1.0 - share + z * share.sqrt()).powi(3))
+}
+
+#[test]
+fn the_bounds_of_a_lot_are_those_of_the_tables() {
+    // Binomial with 38 values: 8 or more misses at 7 % each have a chance of 0.4 %, 7 or more of 1.5 %.
+    assert_eq!(least_covered(38), 31);
+    let [low, high] = chi_squared(38);
+    assert!((low - 0.447).abs() < 0.01 && (high - 1.832).abs() < 0.01);
 }
 
 const RECIPE: &str = "config/rigs/thermostat/recipes/thermostat-ksd9700.toml";

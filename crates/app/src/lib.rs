@@ -46,6 +46,7 @@ pub mod controls;
 pub mod copies;
 pub mod doctor;
 pub mod exit;
+pub mod experiment;
 pub mod follower;
 pub mod gauge_study;
 pub mod generate;

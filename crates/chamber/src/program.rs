@@ -115,6 +115,11 @@ impl Program {
         self.number
     }
 
+    /// Returns the set point of this second.
+    pub fn set_point(&self) -> SetPoint {
+        self.ramp.now()
+    }
+
     /// Changes windows and lag of the passes to come, and of the present one during its approach. The caller does this
     /// when earlier passes have shown where the parts switch.
     pub fn narrow(&mut self, operate: Window, reset: Window, lag_s: f64) {

@@ -1,6 +1,7 @@
 //! Events of a run for the history.
 
 use machine::dut::Calibration;
+use machine::dut::experiment::Found;
 use machine::dut::promise::Broken;
 use machine::dut::prompt::Prompt;
 use machine::handling::inside::Inside;
@@ -32,6 +33,8 @@ pub enum Event {
     ListedAlarms(Vec<ListedAlarm>, RigTime),
     /// The rig is calibrated: references and reference parts are measured.
     Calibrated(Box<Calibration>),
+    /// An experiment without parts has a result.
+    Found(Found),
     /// Rig or parts scatter more than promised; budgets of later parts use the larger standard deviation.
     PromiseBroken(Broken),
     /// A reference check ended with this result, at this rig time.

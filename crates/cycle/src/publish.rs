@@ -11,7 +11,7 @@ use machine::station::Station;
 use machine::station::annunciator::ListedAlarm;
 use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
-use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, Reaction, Token};
+use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, RackView, Reaction, Token};
 use std::collections::BTreeMap;
 use texts::Lang;
 use units::{RigTime, Span};
@@ -133,8 +133,19 @@ impl Cycle {
                 .collect(),
             probe_contact_ohm: station.probe_contact().map(|it| it.0),
             prompt: station.prompt().cloned(),
+            rack: self.rack(now),
             scans: station.serials().waiting().map(|it| it.cloned().collect()),
         }
+    }
+
+    /// Returns the view of the rack; `None` on a rig with a feeder.
+    fn rack(&self, now: RigTime) -> Option<RackView> {
+        let batch = self.station.batch()?;
+        let contact = |number: u16| {
+            let socket = batch.rack().socket(number)?;
+            self.image.input(socket.contact, now, SENSOR_AGE)
+        };
+        Some(RackView::new(batch, contact))
     }
 
     fn phases_s(&self) -> BTreeMap<String, f64> {

@@ -22,6 +22,9 @@ impl Cycle {
         if let Some(calibration) = output.record.calibrated.take() {
             self.send(Event::Calibrated(Box::new(calibration)));
         }
+        if let Some(found) = output.record.parts.found.take() {
+            self.send(Event::Found(found));
+        }
         for broken in output.record.broken.drain(..) {
             self.send(Event::PromiseBroken(broken));
         }

@@ -263,6 +263,7 @@ fn station(
         left: Inside::default(),
         serials: Default::default(),
         prompts: Vec::new(),
+        experiment: None,
     };
     let mechanism = Mechanism::new(strokes, wiring.feeder().unwrap().strokes, size);
     Station::new(plan, device.unwrap(), wiring.axis().clone(), mechanism)

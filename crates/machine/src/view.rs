@@ -4,6 +4,7 @@ mod machine;
 mod mimic;
 mod motion;
 mod order;
+mod rack;
 mod request;
 mod traffic;
 
@@ -11,6 +12,7 @@ pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
 pub use motion::{MotionView, RefusedView, StrokeView};
 pub use order::{AnsweredOrder, By, Order};
+pub use rack::{RackView, SocketView};
 pub use request::{Answer, OrderRequest};
 pub use traffic::{LineTraffic, Message};
 

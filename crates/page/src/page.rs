@@ -41,6 +41,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/login.js"),
     include_str!("page/script/mimic.js"),
     include_str!("page/script/operator.js"),
+    include_str!("page/script/rack.js"),
     include_str!("page/script/alarm_bar.js"),
     include_str!("page/script/prompt.js"),
     include_str!("page/script/activity.js"),

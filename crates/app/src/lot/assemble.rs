@@ -63,8 +63,9 @@ pub(super) fn cycle(
         serials,
         prompts: match context.purpose {
             Purpose::Lot => plant.prompts(context.recipe).cloned().collect(),
-            Purpose::BetweenLots(_) | Purpose::Calibration => Vec::new(),
+            Purpose::BetweenLots(_) | Purpose::Calibration | Purpose::Experiment(_) => Vec::new(),
         },
+        experiment: context.purpose.experiment(),
     };
     let (mut station, guard) = match &wiring.handling {
         Handling::Feeder(table) => {

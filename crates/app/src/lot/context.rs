@@ -4,6 +4,7 @@ use crate::order::LotOrder;
 use crate::source::RigSource;
 use config::Plant;
 use machine::dut::Recipe;
+use machine::dut::experiment::Experiment;
 use machine::station::packml::State;
 use std::sync::Arc;
 use units::RigTime;
@@ -22,6 +23,8 @@ pub enum Purpose {
     /// To measure the references and the reference parts only, even if a calibration is valid; the run itself stores no
     /// calibration in the history.
     Calibration,
+    /// To find figures of a rig with a rack, without parts.
+    Experiment(Experiment),
 }
 
 impl Purpose {
@@ -30,7 +33,15 @@ impl Purpose {
     pub const fn rest_state(self) -> Option<State> {
         match self {
             Self::BetweenLots(state) => Some(state),
-            Self::Lot | Self::Calibration => None,
+            Self::Lot | Self::Calibration | Self::Experiment(_) => None,
+        }
+    }
+
+    /// Returns the experiment of the run; `None` for a run with parts.
+    pub const fn experiment(self) -> Option<Experiment> {
+        match self {
+            Self::Experiment(what) => Some(what),
+            Self::Lot | Self::Calibration | Self::BetweenLots(_) => None,
         }
     }
 

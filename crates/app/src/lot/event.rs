@@ -4,6 +4,7 @@ use super::progress::{LotProgress, PartUnderWay};
 use super::summary::Summary;
 use cycle::Event;
 use machine::dut::Calibration;
+use machine::dut::experiment::Found;
 use machine::handling::output::Landed;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -55,6 +56,15 @@ impl Subscriber for OnceLock<Calibration> {
     fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(Event::Calibrated(calibration)) = event {
             self.get_or_init(|| (**calibration).clone());
+        }
+    }
+}
+
+/// Keeps what an experiment has found.
+impl Subscriber for OnceLock<Found> {
+    fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
+        if let LotEvent::Cycle(Event::Found(found)) = event {
+            self.get_or_init(|| found.clone());
         }
     }
 }

@@ -32,7 +32,7 @@ impl PriorState {
         let calibration = match context.purpose {
             _ if simulated => live_calibration(context).or_else(|| certified(context)),
             Purpose::Calibration => None,
-            Purpose::Lot | Purpose::BetweenLots(_) => {
+            Purpose::Lot | Purpose::BetweenLots(_) | Purpose::Experiment(_) => {
                 valid_calibration(store, context)?.or_else(|| certified(context))
             }
         };

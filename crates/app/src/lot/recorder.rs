@@ -133,6 +133,7 @@ impl Recorder {
             | Event::Landed(_)
             | Event::LotBegan(_)
             | Event::Prompted(_)
+            | Event::Found(_)
             | Event::PromiseBroken(_) => {}
         }
         Ok(())

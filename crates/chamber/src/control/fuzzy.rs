@@ -186,6 +186,70 @@ mod tests {
         }
     }
 
+    /// Returns the rules of a table in the crate `rust-fuzzylogic`, whose centroid is a sum over samples.
+    fn peer(table: &Table) -> rust_fuzzylogic::system::System {
+        use rust_fuzzylogic::antecedent::Antecedent;
+        use rust_fuzzylogic::mamdani::{Consequent, Rule};
+        use rust_fuzzylogic::prelude::Triangular;
+        use rust_fuzzylogic::system::SystemBuilder;
+        let name = |level: Level| format!("{level:?}");
+        let mut system = SystemBuilder::new().uniform_sampler(4_001).unwrap();
+        for variable in ["error", "change", "power"] {
+            system = system.var(variable, -4.0, 4.0).unwrap();
+            for level in LEVELS {
+                let peak = level.peak();
+                let shape = Triangular::new(peak - 1.0, peak, peak + 1.0).unwrap();
+                system = system.term(variable, name(level), shape).unwrap();
+            }
+        }
+        let atom = |var: &str, level: Level| {
+            Box::new(Antecedent::Atom {
+                var: var.into(),
+                term: name(level),
+            })
+        };
+        for (row, error) in table.iter().zip(LEVELS) {
+            for (level, change) in row.iter().zip(LEVELS) {
+                let consequent = vec![Consequent {
+                    var: "power".into(),
+                    term: name(*level),
+                }];
+                let antecedent = Antecedent::And(atom("error", error), atom("change", change));
+                system = system
+                    .rule(Rule {
+                        antecedent,
+                        consequent,
+                    })
+                    .unwrap();
+            }
+        }
+        system.build().unwrap()
+    }
+
+    #[test]
+    fn both_tables_agree_with_the_crate_rust_fuzzylogic() {
+        use rust_fuzzylogic::system::Evaluator;
+        use std::collections::HashMap;
+        for table in [FURNACE, MACVICAR_WHELAN] {
+            let peer = peer(&table);
+            for (error, change) in [
+                (1.0, 0.0),
+                (0.3, -0.2),
+                (2.4, 0.7),
+                (-1.6, 2.9),
+                (-0.45, -2.2),
+            ] {
+                let inputs = HashMap::from([("error", error), ("change", change)]);
+                let expected = peer.evaluate(&inputs).unwrap()["power"];
+                let found = infer(&table, error, change);
+                assert!(
+                    (found - expected).abs() < 1e-4,
+                    "{error} {change}: {found}, {expected}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn the_exact_centroid_agrees_with_a_fine_sum() {
         let heights = [0.2, 0.7, 0.0, 0.45, 1.0, 0.55, 0.1];

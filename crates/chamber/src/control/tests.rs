@@ -3,11 +3,12 @@
 use super::increment::{Increment, Rules};
 use super::pid::Pid;
 use super::scheduled::{FuzzyPid, Symmetry};
-use super::split_range::SplitRange;
+use super::split_range::{Command, SplitRange};
 use super::{Controller, Law, Observed};
 use crate::ramp::{Ramp, SetPoint};
 use crate::test_plant::{AMBIENT_C, Plant, identified, identified_on};
 use crate::tune::Settings;
+use crate::tune::identify::{Identification, Step as IdentifyStep};
 use crate::tune::relay::{RelayTune, Step};
 
 fn all_laws() -> Vec<(&'static str, Controller)> {
@@ -61,6 +62,40 @@ fn identification_finds_the_figures_of_the_chamber() {
         (found.vent_per_k - 18.0 / 2200.0).abs() < 0.002,
         "{found:?}"
     );
+}
+
+#[test]
+fn a_warm_chamber_is_cooled_before_its_identification() {
+    let mut plant = Plant::at(90.0);
+    let vented = Command {
+        heater: 0.0,
+        vent: 1.0,
+    };
+    while plant.step(vented).measured_c > 45.0 {}
+    // The program takes the warm air for a hot room.
+    let mut run = Identification::new(0.15, 38.0, 90.0);
+    let (found, seconds) = (0..12_000)
+        .find_map(|second| match run.step(plant.seen().measured_c).unwrap() {
+            IdentifyStep::Go(command) => {
+                plant.step(command);
+                None
+            }
+            IdentifyStep::Done(found) => Some((found, second)),
+        })
+        .unwrap();
+    let cold = identified();
+    let close = |a: f64, b: f64, share: f64| (a / b - 1.0).abs() < share;
+    assert!((1_800..5_400).contains(&seconds), "{seconds}");
+    assert!(
+        close(found.slope_k_per_s, cold.slope_k_per_s, 0.1),
+        "{found:?}, {cold:?}"
+    );
+    assert!(
+        close(found.loss_per_k, cold.loss_per_k, 0.4),
+        "{found:?}, {cold:?}"
+    );
+    let ambient_c = run.ambient_c();
+    assert!((ambient_c - AMBIENT_C).abs() < 3.0, "{ambient_c}");
 }
 
 #[test]

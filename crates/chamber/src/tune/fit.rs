@@ -1,6 +1,6 @@
 //! Least-squares fits of step responses, sampled once a second from the step on.
 
-use super::FirstOrder;
+use super::{FirstOrder, doubt};
 
 /// Least and greatest time constant that a fit tries, s.
 const TIME_CONSTANTS_S: [f64; 2] = [3.0, 600.0];
@@ -40,6 +40,41 @@ pub fn two_part(response: &[f64]) -> TwoPart {
         time_constant_s,
         delay_s,
         slope_k_per_s,
+    }
+}
+
+/// Returns the standard uncertainties of a fit of both parts.
+pub fn two_part_doubt(response: &[f64], found: &TwoPart) -> TwoPart {
+    let figures = [
+        found.gain_k,
+        found.time_constant_s,
+        found.delay_s,
+        found.slope_k_per_s,
+    ];
+    let model = |it: &[f64; 4], second: f64| {
+        let after = (second - it[2]).max(0.0);
+        it[0] * (1.0 - (-after / it[1]).exp()) + it[3] * after
+    };
+    let [gain_k, time_constant_s, delay_s, slope_k_per_s] =
+        doubt::standard(response, &figures, model);
+    TwoPart {
+        gain_k,
+        time_constant_s,
+        delay_s,
+        slope_k_per_s,
+    }
+}
+
+/// Returns the standard uncertainties of a fit of one lag and a delay.
+pub fn first_order_doubt(response: &[f64], found: &FirstOrder) -> FirstOrder {
+    let figures = [found.gain_k, found.time_constant_s, found.delay_s];
+    let model =
+        |it: &[f64; 3], second: f64| it[0] * (1.0 - (-(second - it[2]).max(0.0) / it[1]).exp());
+    let [gain_k, time_constant_s, delay_s] = doubt::standard(response, &figures, model);
+    FirstOrder {
+        gain_k,
+        time_constant_s,
+        delay_s,
     }
 }
 

@@ -7,8 +7,12 @@
 //! | coast | fan only | losses and fan, together with the drift of the rest |
 //! | vent | vent open | power that the vent removes |
 //!
-//! The chamber starts near ambient; the run takes 15 minutes and heats by some 20 K.
+//! The run takes 15 minutes and heats by some 20 K. A chamber that the rest shows to be warm is cooled first with the vent
+//! open, and rests again.
 
+mod doubt;
+
+use super::cool::{self, Cooled, Cooling};
 use super::fit;
 use super::response::Response;
 use super::{FirstOrder, Identified};
@@ -28,6 +32,15 @@ const LEAST_DELAY: f64 = 0.65;
 const LEAST_DELAY_S: f64 = 4.2;
 /// Least rise of the heat stage, K.
 const LEAST_RISE_K: f64 = 3.0;
+/// Coolings after which a chamber that still drifts is identified as it is.
+const MOST_COOLINGS: usize = 2;
+/// Rounds that find the temperature around a chamber that was cooled.
+const AMBIENT_ROUNDS: usize = 8;
+/// Vent open, no heat.
+const VENTED: Command = Command {
+    heater: 0.0,
+    vent: 1.0,
+};
 
 /// Why a run gives no figures.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -74,10 +87,15 @@ pub struct Identification {
     ambient_c: f64,
     limit_c: f64,
     readings_c: Vec<f64>,
+    /// Cooling of a warm chamber under way.
+    cooling: Option<Cooling>,
+    /// End of the last cooling; `None` for a chamber that was cold.
+    cooled: Option<Cooled>,
+    coolings: usize,
 }
 
 impl Identification {
-    /// Starts a run with a step of the heater (0 to 1), near ambient, with a temperature that it must not exceed.
+    /// Starts a run with a step of the heater (0 to 1), with a temperature that it must not exceed.
     pub fn new(power: f64, ambient_c: f64, limit_c: f64) -> Self {
         let readings_c = Vec::with_capacity(LENGTHS_S.iter().sum());
         Self {
@@ -85,6 +103,9 @@ impl Identification {
             ambient_c,
             limit_c,
             readings_c,
+            cooling: None,
+            cooled: None,
+            coolings: 0,
         }
     }
 
@@ -102,12 +123,21 @@ impl Identification {
             let (found_c, limit_c) = (measured_c, self.limit_c);
             return Err(IdentifyError::TooHot { found_c, limit_c });
         }
+        if let Some(command) = self.cool(measured_c) {
+            return Ok(Step::Go(command));
+        }
         self.readings_c.push(measured_c);
         let [rest, heat, coast, vent] = LENGTHS_S;
+        if second == rest && self.is_warm() {
+            self.readings_c.clear();
+            self.cooling = Some(Cooling::default());
+            self.coolings += 1;
+            return Ok(Step::Go(VENTED));
+        }
         let heating = (rest..rest + heat).contains(&second);
         let venting = second >= rest + heat + coast;
         if second == rest + heat + coast + vent {
-            return self.figures().map(Step::Done);
+            return self.settled_figures().map(Step::Done);
         }
         Ok(Step::Go(Command {
             heater: if heating { self.power } else { 0.0 },
@@ -115,17 +145,68 @@ impl Identification {
         }))
     }
 
-    fn figures(&self) -> Result<Identified, IdentifyError> {
+    /// Performs a second of a cooling; `None` without one, and once it is over.
+    fn cool(&mut self, measured_c: f64) -> Option<Command> {
+        let Some(cooled) = self.cooling.as_mut()?.step(measured_c) else {
+            return Some(VENTED);
+        };
+        (self.cooling, self.cooled) = (None, Some(cooled));
+        None
+    }
+
+    fn is_warm(&self) -> bool {
+        let drift = slope(&self.readings_c[LENGTHS_S[0] - DRIFT_S..]);
+        self.coolings < MOST_COOLINGS && !cool::is_cold(&self.readings_c, drift)
+    }
+
+    /// Returns the temperature around the chamber, C: the one that the run was given, or for a chamber that was cooled the
+    /// one that the figures have shown.
+    pub fn ambient_c(&self) -> f64 {
+        self.ambient_c
+    }
+
+    /// Finds the temperature around a chamber that was cooled: the one that balances fan, losses and vent at the end of the
+    /// cooling.
+    fn find_ambient(&mut self, found: &Identified) {
+        let Some(Cooled {
+            end_c,
+            slope_k_per_s,
+        }) = self.cooled
+        else {
+            return;
+        };
+        let heated = found.fan - slope_k_per_s / found.slope_k_per_s;
+        let removed_per_k = found.loss_per_k + found.vent_per_k;
+        if removed_per_k > 0.0 {
+            self.ambient_c = end_c - heated / removed_per_k;
+        }
+    }
+
+    /// Returns the response to the step, K per unit of power, the drift before it, K/s, and the temperature at the step, C.
+    fn response(&self) -> (Vec<f64>, f64, f64) {
         let [rest, heat, ..] = LENGTHS_S;
         let drift = slope(&self.readings_c[rest - DRIFT_S..=rest]);
         let start_c = mean(&self.readings_c[rest - 4..=rest]) + 2.0 * drift;
         let rise =
             |(second, found): (usize, &f64)| (found - start_c - drift * second as f64) / self.power;
-        let response: Vec<f64> = self.readings_c[rest..=rest + heat]
-            .iter()
-            .enumerate()
-            .map(rise)
-            .collect();
+        let heated = self.readings_c[rest..=rest + heat].iter().enumerate();
+        (heated.map(rise).collect(), drift, start_c)
+    }
+
+    /// Returns the figures. Those of fan and vent depend on the temperature around the chamber, and it on them, so that a
+    /// few rounds find both.
+    fn settled_figures(&mut self) -> Result<Identified, IdentifyError> {
+        let mut found = self.figures()?;
+        for _ in 0..AMBIENT_ROUNDS {
+            self.find_ambient(&found);
+            found = self.figures()?;
+        }
+        Ok(found)
+    }
+
+    fn figures(&self) -> Result<Identified, IdentifyError> {
+        let [rest, heat, ..] = LENGTHS_S;
+        let (response, drift, start_c) = self.response();
         let found_k = response.last().copied().unwrap_or(0.0) * self.power;
         if found_k < LEAST_RISE_K {
             return Err(IdentifyError::NoRise {

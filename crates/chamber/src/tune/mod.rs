@@ -1,5 +1,7 @@
 //! From an experiment on the chamber to settings of its controller: a step response, or a relay oscillation.
 
+mod cool;
+mod doubt;
 pub mod fit;
 pub mod identify;
 pub mod relay;

@@ -1,6 +1,7 @@
 //! Relay auto-tune: the power jumps between two values around a temperature, and the oscillation gives the settings.
 
 use super::Settings;
+use crate::statistics::mean;
 
 /// Height of a jump of the power to either side of its mean, 1 = full heater.
 const JUMP: f64 = 0.15;
@@ -35,8 +36,12 @@ pub enum RelayError {
 pub struct Oscillation {
     /// Ultimate gain, 1/K.
     pub ultimate_per_k: f64,
+    /// Its standard uncertainty, from the scatter of the cycles, 1/K.
+    pub u_ultimate_per_k: f64,
     /// Period, s.
     pub period_s: f64,
+    /// Its standard uncertainty, from the scatter of the cycles, s.
+    pub u_period_s: f64,
 }
 
 impl Oscillation {
@@ -133,10 +138,15 @@ impl RelayTune {
     }
 
     fn oscillation(&self) -> Result<Oscillation, RelayError> {
-        let mean = |of: fn(&Cycle) -> f64| {
-            self.cycles[SETTLING..].iter().map(of).sum::<f64>() / MEASURED as f64
+        let found = |of: fn(&Cycle) -> f64| {
+            let all: Vec<f64> = self.cycles[SETTLING..].iter().map(of).collect();
+            let middle = mean(&all);
+            let squares: f64 = all.iter().map(|it| (it - middle).powi(2)).sum();
+            let count = all.len() as f64;
+            (middle, (squares / (count - 1.0) / count).sqrt())
         };
-        let (found_k, period_s) = (mean(|it| it.amplitude_k), mean(|it| it.period_s));
+        let (found_k, u_k) = found(|it| it.amplitude_k);
+        let (period_s, u_period_s) = found(|it| it.period_s);
         if found_k <= BAND_K {
             return Err(RelayError::TooSmall { found_k });
         }
@@ -144,7 +154,9 @@ impl RelayTune {
         let ultimate_per_k = 4.0 * JUMP / (std::f64::consts::PI * swing_k);
         Ok(Oscillation {
             ultimate_per_k,
+            u_ultimate_per_k: ultimate_per_k * found_k * u_k / (swing_k * swing_k),
             period_s,
+            u_period_s,
         })
     }
 }

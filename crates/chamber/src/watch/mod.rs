@@ -15,6 +15,7 @@ pub mod balance;
 mod lasting;
 pub mod sensors;
 pub mod slope;
+pub mod unpowered;
 
 use crate::control::split_range::Command;
 use crate::ramp::SetPoint;

@@ -14,11 +14,6 @@ const DIFFER_S: u32 = 10;
 const STUCK_K: f64 = 0.02;
 const STUCK_S: usize = 60;
 const STUCK_POWER: f64 = 0.3;
-/// Rise without power that only a shorted power unit makes, K: air that the vent has cooled warms by less from its walls.
-const UNPOWERED_K: f64 = 10.0;
-/// Change within `RISE_S` that only a heater at full power makes, K: the step of an identification makes a third of it.
-const RISE_K: f64 = 15.0;
-const RISE_S: usize = 30;
 
 /// State of the checks.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,63 +90,9 @@ impl Sensors {
     }
 }
 
-/// Watches a chamber whose heater is off or weak and whose answer to power need not be known.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unpowered {
-    highest_c: Option<f64>,
-    recent: Recent,
-}
-
-impl Default for Unpowered {
-    fn default() -> Self {
-        Self {
-            highest_c: None,
-            recent: Recent::of(RISE_S),
-        }
-    }
-}
-
-impl Unpowered {
-    /// Takes a reading and the power of that second; returns true when the chamber heats without power: it is 10 K above
-    /// its highest reading up to the first second without power, or moves by 15 K in 30 s.
-    pub fn step(&mut self, reading_c: f64, power: f64) -> bool {
-        let highest_c = *self.highest_c.get_or_insert(reading_c);
-        if power > 0.0 {
-            self.highest_c = Some(highest_c.max(reading_c));
-        }
-        self.recent.push(reading_c);
-        let races = self.recent.range().is_some_and(|it| it > RISE_K);
-        races || power == 0.0 && reading_c > highest_c + UNPOWERED_K
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn heat_without_power_shows_within_ten_kelvin() {
-        let mut watch = Unpowered::default();
-        assert!(!watch.step(25.0, 0.0) && !watch.step(34.0, 0.0));
-        assert!(watch.step(35.5, 0.0));
-    }
-
-    #[test]
-    fn a_heated_chamber_may_stay_as_hot_as_it_was() {
-        let mut watch = Unpowered::default();
-        assert!(!watch.step(25.0, 0.15) && !watch.step(47.0, 0.15));
-        assert!(!watch.step(56.0, 0.0));
-        assert!(watch.step(57.5, 0.0));
-    }
-
-    #[test]
-    fn a_race_under_weak_power_shows_within_half_a_minute() {
-        let mut watch = Unpowered::default();
-        let found = (0..60).position(|it| watch.step(25.0 + f64::from(it), 0.15));
-        assert_eq!(found, Some(30));
-        let mut watch = Unpowered::default();
-        assert!(!(0..60).any(|it| watch.step(25.0 + 0.3 * f64::from(it), 0.15)));
-    }
 
     #[test]
     fn sensors_that_disagree_for_ten_seconds_are_found() {

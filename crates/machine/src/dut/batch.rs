@@ -1,6 +1,8 @@
 //! The test of a batch: a kind of device tests the parts of all sockets together.
 
+use super::batch_shown::BatchShown;
 use super::characteristic::Characteristic;
+use super::experiment::Found;
 use super::record::TestRecord;
 use super::verdict::Verdict;
 use crate::gauge::Judgement;
@@ -75,6 +77,8 @@ pub struct BatchOutcome {
     pub results: Vec<SocketResult>,
     /// Troubles, in the order in which they were met.
     pub troubles: Vec<BatchTrouble>,
+    /// What an experiment without parts has found; `None` after the test of parts, and after trouble.
+    pub found: Option<Found>,
 }
 
 /// Progress of the test of a batch after a step.
@@ -97,4 +101,7 @@ pub trait BatchTest: Debug + Send {
 
     /// Returns the longest time that the test may take; a longer one counts as stuck.
     fn longest(&self) -> Span;
+
+    /// Returns what pages show of the test.
+    fn shown(&self) -> BatchShown;
 }

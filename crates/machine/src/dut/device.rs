@@ -6,6 +6,7 @@ use super::batch::{BatchOrder, BatchTest};
 use super::calibration::Calibration;
 use super::em_relay;
 use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
+use super::experiment::Experiment;
 use super::procedure::Procedure;
 use super::promise::Broken;
 use super::record::TestRecord;
@@ -91,6 +92,11 @@ pub trait DeviceUnderTest {
     /// Begins the test of all parts in a rack, behind its locked door.
     fn begin_batch(&self, order: &BatchOrder, _now: RigTime) -> Box<dyn BatchTest> {
         panic!("a kind for a nest gets a batch: {order:?}")
+    }
+
+    /// Begins an experiment without parts, behind the locked door of the rack.
+    fn begin_experiment(&self, what: Experiment, _now: RigTime) -> Box<dyn BatchTest> {
+        panic!("a kind without experiments gets one: {what:?}")
     }
 
     /// Returns the acts that cool the rack after a test and after any restart (`on`), or that end the cooling before the

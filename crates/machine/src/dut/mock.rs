@@ -3,6 +3,7 @@
 use super::batch::{
     BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, SocketResult,
 };
+use super::batch_shown::BatchShown;
 use super::device::{DeviceUnderTest, TestOrder};
 use super::procedure::Procedure;
 use super::reason::Reason;
@@ -88,6 +89,7 @@ impl BatchTest for MockTest {
         BatchProgress::Judged(BatchOutcome {
             results: self.sockets.iter().map(result).collect(),
             troubles: self.troubles.clone(),
+            found: None,
         })
     }
 
@@ -97,5 +99,9 @@ impl BatchTest for MockTest {
 
     fn longest(&self) -> Span {
         self.longest
+    }
+
+    fn shown(&self) -> BatchShown {
+        BatchShown::default()
     }
 }

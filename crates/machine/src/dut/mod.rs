@@ -5,11 +5,13 @@
 
 pub mod accuracy;
 pub mod batch;
+pub mod batch_shown;
 pub mod calibration;
 pub mod card;
 pub mod characteristic;
 pub mod device;
 pub mod em_relay;
+pub mod experiment;
 pub mod finding;
 pub mod instruments;
 pub mod keys;

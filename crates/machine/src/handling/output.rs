@@ -3,6 +3,7 @@
 use super::ledger::Part;
 use super::moves::Move;
 use super::place::NestId;
+use crate::dut::experiment::Found;
 use crate::dut::{Characteristic, Judgement, Reason, TestRecord, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::bin::Bin;
@@ -71,6 +72,8 @@ pub struct PartEvents {
     pub left: Vec<NestExit>,
     /// Parts that a beam confirmed in this turn.
     pub landed: Vec<Landed>,
+    /// What an experiment without parts has found in this turn.
+    pub found: Option<Found>,
 }
 
 /// A judged part on its way to the history.

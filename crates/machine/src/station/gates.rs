@@ -18,11 +18,11 @@ use super::trouble::Alarm;
 use super::turn::{Checked, TurnOutput};
 use crate::dut::prompt::Prompt;
 use crate::dut::verdict::Verdict;
-use crate::handling::Place;
 use crate::handling::ledger::PartRole;
 use crate::handling::output::Judged;
 use crate::handling::serial::SerialSettings;
 use crate::handling::wear::{Uses, Wearing};
+use crate::handling::{Batch, Place};
 use serde::Deserialize;
 use units::{Ohm, RigTime, Span};
 
@@ -159,7 +159,9 @@ impl Station {
         assert!(executes, "a reference check outside Execute");
         let at_us = self.plan.wall_clock_us(now);
         let overdue = self.device.due_at_us().is_some_and(|due| due <= at_us);
-        if overdue && !self.is_calibrating() {
+        // A batch that has begun with a valid calibration goes on to its end.
+        let begins = self.line.batch().is_none_or(Batch::is_empty);
+        if overdue && begins && !self.is_calibrating() {
             let trouble = &mut output.notes.trouble;
             return trouble.push(AlarmCode::CalibrationOverdue.into());
         }

@@ -3,6 +3,7 @@
 
 use super::turn::{Inputs, TurnOutput};
 use crate::dut::Device;
+use crate::dut::experiment::Experiment;
 use crate::guard::Situation;
 use crate::handling::batch::BatchTurn;
 use crate::handling::mechanism::DEBOUNCE;
@@ -98,6 +99,7 @@ pub(super) struct BatchTerms<'a> {
     pub attended: bool,
     /// True when another batch may begin.
     pub begins: bool,
+    pub experiment: Option<Experiment>,
 }
 
 impl Line {
@@ -198,6 +200,7 @@ impl Line {
             lacking: terms.lacking,
             attended: terms.attended,
             begins: terms.begins,
+            experiment: terms.experiment,
         };
         Some((batch, turn))
     }

@@ -44,6 +44,7 @@ pub mod trouble;
 pub mod turn;
 
 use crate::dut::Device;
+use crate::dut::experiment::Experiment;
 use crate::dut::prompt::Prompt;
 use crate::guard::{Motion, Situation};
 use crate::handling::inside::Inside;
@@ -99,6 +100,8 @@ pub struct Plan {
     pub serials: Serials,
     /// What a person must answer during the lot.
     pub prompts: Vec<Prompt>,
+    /// Experiment of the run, which tests no parts; `None` for a lot.
+    pub experiment: Option<Experiment>,
 }
 
 impl Plan {
@@ -208,6 +211,11 @@ impl Station {
     /// Returns the part ledger.
     pub fn ledger(&self) -> &Ledger {
         &self.line.ledger
+    }
+
+    /// Returns rack and batch; `None` on a rig with a feeder.
+    pub fn batch(&self) -> Option<&Batch> {
+        self.line.batch()
     }
 
     /// Returns the prompt that waits for its answer, if there is one.

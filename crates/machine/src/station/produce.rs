@@ -43,9 +43,13 @@ impl Station {
             lacking,
             attended: self.plan.attended,
             begins: permits.release,
+            experiment: self.plan.experiment,
         };
         if let Some((batch, mut turn)) = self.line.batch_at(now, &inputs, output, terms) {
             batch.step(&mut turn);
+        }
+        if output.record.parts.found.is_some() {
+            self.plan.experiment = None;
         }
         output.notes.take_over();
     }
@@ -119,9 +123,9 @@ impl Station {
         self.line.is_finished(false, recorded, output) && !moving && output.rig.motions.is_empty()
     }
 
-    /// Returns true while the magazine is to deliver more parts of the lot.
+    /// Returns true while the lot lacks parts, or its experiment has no result.
     pub(super) fn expects_more(&self) -> bool {
-        self.lacking().is_none_or(|lacking| lacking > 0)
+        self.plan.experiment.is_some() || self.lacking().is_none_or(|lacking| lacking > 0)
     }
 
     /// Returns the number of parts that the lot still lacks; `None` for an endless lot.

@@ -50,6 +50,7 @@ impl Station {
             lacking: None,
             attended: self.plan.attended,
             begins: false,
+            experiment: None,
         };
         let at = self.line.batch_at(now, &inputs, output, terms);
         let home = at.is_some_and(|(batch, mut turn)| batch.home(&mut turn));

@@ -1,6 +1,6 @@
 //! The machine as pages show it: PackML state with its buttons, actuators, places, signals, wear.
 
-use super::MotionView;
+use super::{MotionView, RackView};
 use crate::dut::prompt::Prompt;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub struct Machine {
     pub buttons: Vec<Button>,
     /// Actuators in the order of the line.
     pub actuators: Vec<ActuatorView>,
-    /// Parts by place: `pocket`, `nest`, `gripper`, `falling`; empty places are absent.
+    /// Parts by place: `pocket`, `nest`, `gripper`, `falling`, on a rack `socket_1` and so on; empty places are absent.
     pub places: BTreeMap<String, Token>,
     /// Names of the bins, in the order of the line.
     pub bins: Vec<String>,
@@ -44,6 +44,8 @@ pub struct Machine {
     pub scans: Option<Vec<String>>,
     /// Prompt that waits for its answer; null without one.
     pub prompt: Option<Prompt>,
+    /// Rack with its batch; null on a rig with a feeder.
+    pub rack: Option<RackView>,
 }
 
 /// One order that a button sends.

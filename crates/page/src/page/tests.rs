@@ -109,6 +109,8 @@ fn every_text_of_the_pages_is_used() {
         "failure",
         "body",
         "people",
+        "rack_phase",
+        "rack_socket",
         "tooling",
         "tooling_end",
         "tooling_kind",

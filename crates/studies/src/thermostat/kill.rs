@@ -42,8 +42,8 @@ pub struct Kills {
     pub hot: u64,
     /// Starts that unlocked a hot rack, closed its contactor or did not cool it.
     pub wrong_starts: u64,
-    /// Lives that ended by themselves.
-    pub ended: u64,
+    /// Causes of the lives that ended by themselves.
+    pub ended: Vec<String>,
 }
 
 /// Follows the outputs of the rig.
@@ -123,7 +123,7 @@ pub fn kills(count: u64, seed: u64) -> anyhow::Result<Kills> {
         let [from, to] = INSTANTS_S;
         let until_s = dice.between(from, to);
         let end = live(&runner, &format!("K{round}"), until_s)?;
-        found.ended += u64::from(end != End::Killed);
+        found.ended.extend(cause(&end));
         let (states, _) = watch.entries();
         let heats = states.last().is_some_and(|it| it & CONTACTOR != 0);
         found.heating += u64::from(heats);
@@ -153,6 +153,16 @@ fn live(runner: &Runner, lot: &str, seconds: u64) -> anyhow::Result<End> {
     Ok(runner.run_life(lot, &life, None, Dice::new(0))?.end)
 }
 
+/// Returns why a life ended; `None` after a kill.
+fn cause(end: &End) -> Option<String> {
+    match end {
+        End::Killed => None,
+        End::Exit(exit) => Some(exit.cause().map_or("done".into(), |it| it.code.clone())),
+        End::Failed(why) => Some(why.clone()),
+        End::Hung => Some("hung".into()),
+    }
+}
+
 /// Returns the figures of `count` kills.
 ///
 /// # Errors
@@ -167,6 +177,10 @@ pub fn figures(count: u64) -> anyhow::Result<Vec<Figure>> {
             found.hot,
             found.wrong_starts,
         ),
-        Figure::none("lives that ended before their kill", count, found.ended),
+        Figure::none(
+            "lives that ended before their kill",
+            count,
+            found.ended.len() as u64,
+        ),
     ])
 }

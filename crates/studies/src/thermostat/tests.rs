@@ -68,4 +68,5 @@ fn a_killed_batch_is_safe_and_restarts_cold() {
         (0, 0),
         "{found:?}"
     );
+    assert!(found.ended.is_empty(), "{found:?}");
 }

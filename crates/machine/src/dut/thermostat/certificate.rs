@@ -3,6 +3,7 @@
 //! A laboratory compares the reference thermometer, read through its own module, at several temperatures, and measures
 //! each socket against the air. `relayrig calibrate` stores both; without them results carry the uncertainty of a raw rig.
 
+use super::response::StatedResponse;
 use crate::dut::calibration::CalibrationFacts;
 use crate::dut::device::Made;
 use crate::gauge::Factor;
@@ -51,8 +52,11 @@ pub struct SocketMap {
 pub struct Certificate {
     /// Chain of the reference thermometer.
     pub chain: Chain,
-    /// Map of the sockets.
+    /// Temperatures of the sockets.
     pub map: SocketMap,
+    /// Response of the chamber, which is no statement of a laboratory; `None` when batches identify it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chamber: Option<StatedResponse>,
 }
 
 /// The certificate as the history keeps it.
@@ -134,13 +138,16 @@ impl Calibration {
             due_at_us: made.at_us + made.valid_us,
             simulated: made.simulated,
             nominal_v: EVERY_PART_V,
-            certificate,
+            certificate: Certificate {
+                chamber: None,
+                ..certificate
+            },
         }
     }
 
     /// Returns the data that every kind of calibration has.
     pub fn facts(&self) -> CalibrationFacts {
-        let Certificate { chain, map } = &self.certificate;
+        let Certificate { chain, map, .. } = &self.certificate;
         let named = |name, value, u| Named {
             name,
             unit: Unit::Kelvin,
@@ -179,6 +186,7 @@ mod tests {
                 offset_k: vec![0.3, -0.3],
                 u_k: 0.1,
             },
+            chamber: None,
         }
     }
 

@@ -1,12 +1,14 @@
 //! A recipe of temperature relays on a rig, with what its batches have revealed about chamber and lot.
 
-use super::certificate::Certificate;
+use super::certificate::{Calibration, Certificate};
 use super::measure::Test;
 use super::points::Points;
 use super::recipe::ThermostatRecipe;
+use super::response::StatedResponse;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::batch::{BatchOrder, BatchTest};
 use crate::dut::device::{DeviceUnderTest, TestOrder};
+use crate::dut::experiment::Experiment;
 use crate::dut::record::Own;
 use crate::dut::{Procedure, Recipe, TestRecord};
 use crate::instrument::act::Act;
@@ -54,6 +56,10 @@ pub struct Device {
     pub lesson: Option<Arc<Lesson>>,
     /// Certificate of thermometer chain and sockets; `None` on a rig without calibration.
     pub certificate: Option<Arc<Certificate>>,
+    /// Instant at which the certificate runs out, microseconds since 1970 UTC; `None` without one.
+    pub due_at_us: Option<i64>,
+    /// Response of the chamber that the plant states; `None` when the first batch identifies it.
+    pub stated: Option<StatedResponse>,
 }
 
 impl Device {
@@ -71,14 +77,24 @@ impl Device {
             accuracy,
             lesson: None,
             certificate: None,
+            due_at_us: None,
+            stated: None,
         }
     }
 
-    /// Returns the device with this certificate.
-    pub fn calibrated(self, certificate: Option<Certificate>) -> Self {
-        let certificate = certificate.map(Arc::new);
+    /// Returns the response of the chamber, from an earlier batch of the run or as the plant states it; `None` before the
+    /// first batch of a run has identified it.
+    pub fn response(&self) -> Option<Identified> {
+        let of_batch = self.lesson.as_ref().map(|it| it.chamber);
+        of_batch.or_else(|| self.stated.map(|it| it.identified()))
+    }
+
+    /// Returns the device with this calibration.
+    pub fn calibrated(self, calibration: Option<Calibration>) -> Self {
+        let due_at_us = calibration.as_ref().map(|it| it.facts().due_at_us);
         Self {
-            certificate,
+            due_at_us,
+            certificate: calibration.map(|it| Arc::new(it.certificate)),
             ..self
         }
     }
@@ -105,6 +121,10 @@ impl DeviceUnderTest for Device {
         Box::new(Test::begin(self.clone(), order, now))
     }
 
+    fn begin_experiment(&self, what: Experiment, now: RigTime) -> Box<dyn BatchTest> {
+        Box::new(Test::experiment(self.clone(), what, now))
+    }
+
     fn cooling(&self, on: bool) -> Vec<Act> {
         let mut acts = self.heat_off(if on { 1.0 } else { 0.0 });
         acts.push(Act::Set(vec![(self.points.fan, on)]));
@@ -113,6 +133,10 @@ impl DeviceUnderTest for Device {
 
     fn air_thermometers(&self) -> Vec<Thermometer> {
         vec![self.points.reference, self.points.control]
+    }
+
+    fn due_at_us(&self) -> Option<i64> {
+        self.due_at_us
     }
 
     fn learn(&mut self, record: &TestRecord, _pass: bool) {

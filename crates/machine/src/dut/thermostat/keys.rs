@@ -40,10 +40,35 @@ const MAP: &[Key] = table! {
     key("u_k", above_zero(5.0, "K"), "gauge", "standard uncertainty of an offset");
 };
 
+const FIRST_ORDER: &[Key] = table! {
+    key("gain_k", above_zero(1_000.0, "K"), "station", "rise per full heater");
+    key("time_constant_s", above_zero(600.0, "s"), "station", "its time constant");
+    key("delay_s", from_to(0.0, 60.0, "s"), "station", "its delay");
+};
+
+const PID: &[Key] = table! {
+    key("gain_per_k", above_zero(10.0, "1/K"), "station", "full heaters per kelvin of error");
+    key("integral_s", above_zero(3_600.0, "s"), "station", "integral time");
+    key("derivative_s", from_to(0.0, 600.0, "s"), "station", "derivative time");
+};
+
+const RESPONSE: &[Key] = table! {
+    key("gain_k", above_zero(1_000.0, "K"), "station", "rise of the air per full heater that settles");
+    key("time_constant_s", above_zero(600.0, "s"), "station", "its time constant");
+    key("delay_s", from_to(0.0, 60.0, "s"), "station", "delay of the whole response");
+    key("slope_k_per_s", above_zero(10.0, "K/s"), "station", "rise per full heater that goes on");
+    key("loss_per_k", from_to(0.0, 1.0, "1/K"), "station", "full heaters that replace the losses per kelvin above the room");
+    key("fan", from_to(0.0, 1.0, ""), "station", "power of the fan in full heaters");
+    key("vent_per_k", from_to(0.0, 1.0, "1/K"), "station", "full heaters that the open vent removes per kelvin above the room");
+    key("first_order", Form::Table(FIRST_ORDER), "station", "response of the first two minutes, for the settings of the controller");
+    optional("pid", Form::Table(PID), "station", "settings of the controller, of `relayrig chamber tune`; without them they follow from first_order");
+};
+
 /// Keys of the certificate of the rack.
 pub const CERTIFICATE: &[Key] = table! {
     key("chain", Form::Table(CHAIN), "gauge", "reference thermometer, read through its module");
     key("map", Form::Table(MAP), "gauge", "sockets against the air");
+    optional("chamber", Form::Table(RESPONSE), "station", "response of the chamber, of `relayrig chamber identify`; without it the first batch of a run finds it");
 };
 
 const TEST: &[Key] = table! {

@@ -13,6 +13,7 @@
 //! | what a test finds in addition to figures | [`finding`] |
 //! | the keys of its recipe and of the certificate | [`keys`] |
 //! | calibration of thermometer chain and sockets | [`certificate`] |
+//! | response of the chamber, as a file states it | [`response`] |
 //! | what outlives a batch | [`device`] |
 //! | the test of a batch | [`measure`] |
 //! | the process card | [`card`] |
@@ -28,6 +29,7 @@ pub mod measure;
 pub mod parameter;
 pub mod points;
 pub mod recipe;
+pub mod response;
 
 pub use device::Device;
 pub use finding::Finding;

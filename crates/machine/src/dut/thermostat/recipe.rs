@@ -119,12 +119,15 @@ impl KindRecipe for ThermostatRecipe {
         stored: Option<Calibration>,
     ) -> Result<Device, MissingPoint> {
         let points = Points::resolve(rig.wiring)?;
-        let certificate = stored.and_then(|it| match it {
-            Calibration::Thermostat(of_rack) => Some(of_rack.certificate),
+        let of_rack = stored.and_then(|it| match it {
+            Calibration::Thermostat(of_rack) => Some(of_rack),
             Calibration::EmRelay(_) => None,
         });
         let device = super::Device::new(recipe, self, points, *rig.accuracy);
-        let device = device.calibrated(certificate);
+        let device = super::Device {
+            stated: rig.certificate.and_then(|it| it.chamber),
+            ..device.calibrated(of_rack)
+        };
         Ok(Device::Thermostat(Box::new(device)))
     }
 

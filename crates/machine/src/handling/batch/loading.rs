@@ -87,6 +87,11 @@ impl Loading {
         Some(if is_counted { expected } else { seen })
     }
 
+    /// Performs a turn before an experiment; returns true once the door is closed.
+    pub(super) fn is_shut(&mut self, turn: &mut BatchTurn) -> bool {
+        self.is_closed(turn) && turn.begins
+    }
+
     /// Asks the person which sockets are filled; returns them once the person has answered.
     fn ask(&mut self, seen: Vec<u16>, expected: Vec<u16>) -> Option<Vec<u16>> {
         if self.asked != seen || self.prompt.is_none() {

@@ -39,6 +39,8 @@ use super::serial::Serials;
 use super::trouble::Trouble;
 use crate::dut::Device;
 use crate::dut::batch::{BatchOrder, BatchTest};
+use crate::dut::batch_shown::BatchShown;
+use crate::dut::experiment::Experiment;
 use crate::dut::prompt::Prompt;
 use crate::instrument::act::{JobDone, RunnerState};
 use crate::rig::image::Image;
@@ -84,6 +86,19 @@ pub enum Phase {
     Unloading(Unloading),
 }
 
+impl Phase {
+    /// Returns the name that pages know.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Loading(_) => "loading",
+            Self::Locking { .. } => "locking",
+            Self::Testing { .. } => "testing",
+            Self::Cooling { .. } => "cooling",
+            Self::Unloading(_) => "unloading",
+        }
+    }
+}
+
 /// State of the rack and its batch.
 #[derive(Debug)]
 pub struct Batch {
@@ -98,6 +113,8 @@ pub struct Batch {
     done: Option<JobDone>,
     /// The prompt that [`Self::take_opened`] returned last.
     announced: Option<Prompt>,
+    /// What pages show of the last test that has ended; `None` before it.
+    last: Option<BatchShown>,
 }
 
 /// Everything that the batch sees and changes in one turn.
@@ -126,6 +143,8 @@ pub struct BatchTurn<'a> {
     pub attended: bool,
     /// True when another batch may begin.
     pub begins: bool,
+    /// Experiment without parts that is due; `None` in a lot.
+    pub experiment: Option<Experiment>,
 }
 
 impl BatchTurn<'_> {
@@ -179,6 +198,7 @@ impl Batch {
             shown: None,
             done: None,
             announced: None,
+            last: None,
         }
     }
 
@@ -190,6 +210,17 @@ impl Batch {
     /// Returns the phase.
     pub fn phase(&self) -> &Phase {
         &self.phase
+    }
+
+    /// Returns the number of batches that have begun.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Returns what pages show of the test under way, else of the last one; `None` before the first one.
+    pub fn shown(&self) -> Option<BatchShown> {
+        let present = self.test().map(BatchTest::shown);
+        present.or_else(|| self.last.clone())
     }
 
     /// Returns the prompt that waits for an answer, if there is one.
@@ -256,7 +287,10 @@ impl Batch {
     /// Records that all outputs are safe: the test has ended, the door is locked, nothing cools.
     pub fn cut_off(&mut self, now: RigTime) {
         self.watch = match &self.phase {
-            Phase::Testing { .. } => RackWatch::new(&self.rack),
+            Phase::Testing { test, .. } => {
+                self.last = Some(test.shown());
+                RackWatch::new(&self.rack)
+            }
             Phase::Loading(_)
             | Phase::Locking { .. }
             | Phase::Cooling { .. }
@@ -302,7 +336,9 @@ impl Batch {
         let next = match &mut self.phase {
             Phase::Testing { since, test } => {
                 let since = *since;
-                testing::advance(turn, since, test.as_mut(), done.as_ref())
+                let next = testing::advance(turn, since, test.as_mut(), done.as_ref());
+                self.last = next.as_ref().map(|_| test.shown()).or(self.last.take());
+                next
             }
             Phase::Loading(_)
             | Phase::Locking { .. }
@@ -324,7 +360,10 @@ impl Batch {
         self.watch.check(turn);
         match &mut self.phase {
             Phase::Loading(loading) => {
-                let sockets = loading.step(turn, &self.rack)?;
+                let sockets = match turn.experiment {
+                    Some(_) => loading.is_shut(turn).then(Vec::new)?,
+                    None => loading.step(turn, &self.rack)?,
+                };
                 let since = turn.now;
                 Some(Phase::Locking { since, sockets })
             }
@@ -376,8 +415,14 @@ impl Batch {
         None
     }
 
-    /// Numbers the parts and begins their test.
+    /// Numbers the parts and begins their test, or begins an experiment without parts.
     fn begin(&mut self, turn: &mut BatchTurn, sockets: Vec<u16>) -> Phase {
+        if let Some(what) = turn.experiment {
+            return Phase::Testing {
+                since: turn.now,
+                test: turn.device.begin_experiment(what, turn.now),
+            };
+        }
         assert!(!sockets.is_empty(), "a batch without parts");
         self.number += 1;
         for socket in &sockets {

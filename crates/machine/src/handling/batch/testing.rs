@@ -33,6 +33,7 @@ pub(super) fn advance(
             let troubles = outcome.troubles.into_iter().map(Trouble::Batch);
             turn.trouble.extend(troubles);
             judged(turn, outcome.results);
+            turn.parts.found = outcome.found;
             Some(Phase::Cooling {
                 since: turn.now,
                 reported: false,

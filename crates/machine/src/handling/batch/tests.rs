@@ -77,6 +77,7 @@ impl Scenario {
             lacking: self.lacking,
             attended: self.attended,
             begins: true,
+            experiment: None,
         };
         match self.homing {
             true => self.homing = !self.batch.home(&mut turn),

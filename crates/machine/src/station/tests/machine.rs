@@ -129,6 +129,7 @@ fn plan(count: Option<u64>) -> Plan {
         left: Inside::default(),
         serials: Serials::default(),
         prompts: Vec::new(),
+        experiment: None,
     }
 }
 

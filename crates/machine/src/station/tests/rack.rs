@@ -45,6 +45,7 @@ impl Plant {
             left: Default::default(),
             serials: Default::default(),
             prompts: Vec::new(),
+            experiment: None,
         };
         let rack = rig.wiring.rack().unwrap().clone();
         Self {

@@ -15,7 +15,7 @@ function showLast(last) {
   const [, verdict, bin] = at("verdict").children;
   at("verdict").className = last ? last.verdict : "";
   verdict.textContent = last ? wordOr("verdict-" + last.verdict, last.verdict) : NONE;
-  bin.textContent = last ? word("to_bin") + " " + wordOr("bin-" + last.bin, last.bin) : word("no_part");
+  bin.textContent = last ? word(view.machine?.rack ? "rack-to_list" : "to_bin") + " " + wordOr("bin-" + last.bin, last.bin) : word("no_part");
   showRecent(view.recent);
   const reasons = last ? reasonTexts(last) : [];
   at("reasons").replaceChildren(...reasons.slice(0, 3).map((text) => make("li", text)));
@@ -127,6 +127,7 @@ function showOperator() {
   const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);
   at("yield").textContent = share(view.verdicts.pass || 0, judged);
   showMimic();
+  showRack();
   showScans();
   showProgress();
   showLast(view.last);

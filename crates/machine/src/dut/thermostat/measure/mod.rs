@@ -16,13 +16,17 @@ mod drop;
 mod passes;
 mod results;
 mod seconds;
+mod trial;
 
 use super::Finding;
 use super::device::Device;
 use crate::dut::batch::{BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble};
+use crate::dut::batch_shown::{BatchShown, SocketSwitched};
+use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
 use crate::rig::image::Image;
 use crate::rig::rack::Socket;
+use chamber::lag::{Switching, Transition};
 use contacts::Contact;
 use drop::{Found, Unreadable};
 use passes::Work;
@@ -78,6 +82,8 @@ pub struct Test {
     sockets: Vec<Socket>,
     contacts: Vec<Contact>,
     drops: Result<Vec<Found>, Unreadable>,
+    /// Experiment without parts; `None` for the test of parts.
+    experiment: Option<Experiment>,
     /// Record and chamber of the heated part of the test, once it is over.
     ran: Option<Box<Seconds>>,
     state: State,
@@ -109,9 +115,22 @@ impl Test {
             state: State::Cold(Runner::new(acts, now)),
             order: order.clone(),
             drops: Ok(Vec::new()),
+            experiment: None,
             ran: None,
             sockets,
             device,
+        }
+    }
+
+    /// Begins an experiment without parts; the door must be locked.
+    pub fn experiment(device: Device, what: Experiment, now: RigTime) -> Self {
+        let nothing = BatchOrder {
+            sockets: Vec::new(),
+            number: 0,
+        };
+        Self {
+            experiment: Some(what),
+            ..Self::begin(device, &nothing, now)
         }
     }
 
@@ -129,10 +148,8 @@ impl Test {
                         &runner.readings,
                         &self.device.accuracy,
                     );
-                    Next::State(Box::new(State::Seconds(Box::new(Seconds::begin(
-                        &self.device,
-                        now,
-                    )))))
+                    let seconds = Seconds::begin(&self.device, self.experiment, now);
+                    Next::State(Box::new(State::Seconds(Box::new(seconds))))
                 }
                 RunnerState::Trouble(why) => self.off(now, Some(Ended::Trouble(why))),
                 waiting => Next::Waiting(waiting),
@@ -185,6 +202,9 @@ impl Test {
                 panic!("a test judges at its end")
             }
         };
+        if self.experiment.is_some() {
+            return self.experiment_outcome(why);
+        }
         let mut troubles = self.open_sockets();
         if let Some(Ended::Found(found)) = &why {
             troubles.extend(found.trouble());
@@ -217,7 +237,30 @@ impl Test {
             }
             (why, _, _) => results::void(&self.device, &self.order, why),
         };
-        BatchOutcome { results, troubles }
+        BatchOutcome {
+            results,
+            troubles,
+            found: None,
+        }
+    }
+
+    /// Returns what the experiment has found, or the trouble that ended it.
+    fn experiment_outcome(&self, why: Option<Ended>) -> BatchOutcome {
+        let work = self.ran.as_ref().and_then(|it| it.work.as_ref());
+        let found = match (&why, work) {
+            (None, Some(Work::Trial(trial))) => Some(trial.found()),
+            (_, _) => None,
+        };
+        let troubles = match why {
+            Some(Ended::Found(finding)) => finding.trouble().into_iter().collect(),
+            Some(Ended::Trouble(_)) | None if found.is_none() => vec![BatchTrouble::NotIdentified],
+            Some(Ended::Trouble(_)) | None => Vec::new(),
+        };
+        BatchOutcome {
+            results: Vec::new(),
+            troubles,
+            found,
+        }
     }
 
     /// Returns the trouble of contacts that were open before heating.
@@ -257,7 +300,9 @@ impl BatchTest for Test {
         let stage = match &self.state {
             State::Cold(_) | State::Drops(_) => Stage::Contacts,
             State::Seconds(seconds) => match &seconds.work {
-                None | Some(Work::Identification(_) | Work::Rest(..)) => Stage::Identification,
+                None | Some(Work::Identification(_) | Work::Rest(..) | Work::Trial(_)) => {
+                    Stage::Identification
+                }
                 Some(Work::Passes(_)) => Stage::Passes,
             },
             State::Off(..) => Stage::Off,
@@ -267,5 +312,22 @@ impl BatchTest for Test {
 
     fn longest(&self) -> Span {
         LONGEST
+    }
+
+    fn shown(&self) -> BatchShown {
+        let seconds = match &self.state {
+            State::Seconds(seconds) => Some(seconds),
+            State::Cold(_) | State::Drops(_) | State::Off(..) => self.ran.as_ref(),
+        };
+        let sockets = self.sockets.iter().zip(&self.contacts);
+        let switched = sockets.map(|(socket, contact)| {
+            let Switching { operate, reset } = contact.events().switching;
+            let times = |all: Vec<Transition>| all.into_iter().map(|it| it.first_s);
+            SocketSwitched::new(socket.number, times(operate), times(reset))
+        });
+        BatchShown {
+            switched: switched.collect(),
+            ..seconds.map(|it| it.shown()).unwrap_or_default()
+        }
     }
 }

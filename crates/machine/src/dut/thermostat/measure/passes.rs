@@ -4,6 +4,8 @@ use super::super::Finding;
 use super::super::device::{Device, Lesson};
 use super::super::recipe::Control;
 use super::contacts::Events;
+use super::trial::Trial;
+use crate::dut::experiment::Experiment;
 use chamber::control::increment::{Increment, Rules};
 use chamber::control::pid::Pid;
 use chamber::control::scheduled::{FuzzyPid, Symmetry};
@@ -41,23 +43,33 @@ pub struct Seen {
     pub waiting: Waiting,
 }
 
+/// What is known about the chamber before the passes.
+#[derive(Debug, Clone, Copy)]
+pub struct Known {
+    chamber: Identified,
+    /// Temperature of the room, C.
+    ambient_c: f64,
+}
+
 /// What the chamber does at present.
 #[derive(Debug)]
 pub enum Work {
     /// Identification of the chamber, with a step of the heater.
     Identification(Box<Identification>),
     /// Rest with the fan only, for the remaining seconds.
-    Rest(Identified, u32),
+    Rest(Known, u32),
     /// Passes through the windows.
     Passes(Box<Passes>),
+    /// What follows the identification of an experiment without parts.
+    Trial(Box<Trial>),
 }
 
 impl Work {
-    /// Starts with an identification, unless an earlier batch of the run has made one. Then starts with a rest, because
-    /// the chamber still gives off heat of that batch.
-    pub fn new(device: &Device, ambient_c: f64, operate_c: f64) -> Self {
-        match &device.lesson {
-            Some(lesson) => Self::Rest(lesson.chamber, REST_S),
+    /// Starts with an identification, unless the response of the chamber is known. Then starts with a rest, because the
+    /// chamber may still give off heat of an earlier batch. An experiment always identifies.
+    pub fn new(device: &Device, is_experiment: bool, ambient_c: f64, operate_c: f64) -> Self {
+        match device.response().filter(|_| !is_experiment) {
+            Some(chamber) => Self::Rest(Known { chamber, ambient_c }, REST_S),
             None => {
                 let run = Identification::new(STEP, ambient_c, operate_c);
                 Self::Identification(Box::new(run))
@@ -72,22 +84,34 @@ impl Work {
     pub fn step(
         &mut self,
         device: &Device,
+        experiment: Option<Experiment>,
         seen: &Seen,
-        record: &Record,
-        events: &dyn Fn() -> Vec<Events>,
+        (record, events): (&Record, &dyn Fn() -> Vec<Events>),
     ) -> Result<Option<Command>, Finding> {
         let control_c = seen.control_c.ok_or(Finding::SensorBroken)?;
         match self {
             Self::Identification(run) => match run.step(control_c) {
                 Ok(Step::Go(command)) => Ok(Some(command)),
                 Ok(Step::Done(found)) => {
-                    *self = Self::Rest(found, REST_S);
+                    let both = [found, run.doubt(&found)];
+                    let ambient_c = run.ambient_c();
+                    let trial = |what| Trial::new(device, what, both, ambient_c);
+                    *self = match experiment {
+                        Some(what) => Self::Trial(Box::new(trial(what))),
+                        None => Self::Rest(
+                            Known {
+                                chamber: found,
+                                ambient_c,
+                            },
+                            REST_S,
+                        ),
+                    };
                     Ok(Some(Command::OFF))
                 }
                 Err(_) => Err(Finding::NotIdentified),
             },
-            Self::Rest(found, 0) => {
-                let passes = Passes::new(device, found, control_c, seen.ambient_c);
+            Self::Rest(known, 0) => {
+                let passes = Passes::new(device, known, control_c);
                 *self = Self::Passes(Box::new(passes));
                 Ok(Some(Command::OFF))
             }
@@ -96,6 +120,25 @@ impl Work {
                 Ok(Some(Command::OFF))
             }
             Self::Passes(passes) => passes.step(device, seen, control_c, record, events),
+            Self::Trial(trial) => trial.step(seen, control_c),
+        }
+    }
+
+    /// Returns the set point of this second, C; `None` before the passes.
+    pub fn set_c(&self) -> Option<f64> {
+        match self {
+            Self::Identification(_) | Self::Rest(..) | Self::Trial(_) => None,
+            Self::Passes(passes) => Some(passes.program.set_point().value_c),
+        }
+    }
+
+    /// Returns the temperature of the room, C, once the response of the chamber is known; `None` before.
+    pub fn ambient_c(&self) -> Option<f64> {
+        match self {
+            Self::Identification(_) => None,
+            Self::Rest(known, _) => Some(known.ambient_c),
+            Self::Passes(passes) => Some(passes.ambient_c),
+            Self::Trial(trial) => Some(trial.ambient_c()),
         }
     }
 
@@ -103,8 +146,9 @@ impl Work {
     pub fn chamber(&self) -> Option<Identified> {
         match self {
             Self::Identification(_) => None,
-            Self::Rest(found, _) => Some(*found),
+            Self::Rest(known, _) => Some(known.chamber),
             Self::Passes(passes) => Some(passes.chamber),
+            Self::Trial(trial) => Some(trial.chamber()),
         }
     }
 }
@@ -127,7 +171,11 @@ pub struct Passes {
 }
 
 impl Passes {
-    fn new(device: &Device, found: &Identified, control_c: f64, ambient_c: f64) -> Self {
+    fn new(device: &Device, known: &Known, control_c: f64) -> Self {
+        let Known {
+            chamber: found,
+            ambient_c,
+        } = known;
         let thermostat = &device.thermostat;
         let expected = thermostat
             .windows(&device.recipe.limits)
@@ -143,16 +191,22 @@ impl Passes {
             .map_or(thermostat.part.lag_s, |it| it.seconds);
         Self {
             chamber: *found,
-            ambient_c,
+            ambient_c: *ambient_c,
             passes: all.len(),
             program: Program::new(control_c, all, lag_s, UNLOAD_C),
-            controller: controller(thermostat.test.control, found),
+            controller: controller(device, found),
             watch: Watch::new(found),
             slope: SlidingSlope::default(),
             stayed_s: 0,
             lag_s,
             expected,
         }
+    }
+
+    /// Returns number and count of the passes, from 1; `None` after the last one.
+    pub fn progress(&self) -> Option<(usize, usize)> {
+        let present = self.program.pass() + 1;
+        (present <= self.passes).then_some((present, self.passes))
     }
 
     /// Returns true in the rise of the last pass.
@@ -249,9 +303,10 @@ pub fn shown(record: &Record, events: &[Events], lag_s: f64, expected: [Window; 
     ]
 }
 
-fn controller(control: Control, chamber: &Identified) -> Controller {
-    let tuned = Settings::simc(&chamber.first_order, 1.0);
-    let law = match control {
+fn controller(device: &Device, chamber: &Identified) -> Controller {
+    let stated = device.stated.and_then(|it| it.settings());
+    let tuned = stated.unwrap_or_else(|| Settings::simc(&chamber.first_order, 1.0));
+    let law = match device.thermostat.test.control {
         Control::Pid => Law::Pid(Pid::new(tuned)),
         Control::Fuzzy => Law::Fuzzy(Increment::new(Rules::FURNACE)),
         Control::FuzzyPid => Law::FuzzyPid(FuzzyPid::new(tuned, Symmetry::Even)),

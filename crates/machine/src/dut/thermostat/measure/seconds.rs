@@ -7,6 +7,8 @@ use super::contacts::{Contact, Events};
 use super::creep::{EACH_SECOND, Pulse};
 use super::drop;
 use super::passes::{Seen, Work};
+use crate::dut::batch_shown::{AirCurve, BatchShown};
+use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
 use crate::rig::image::Image;
 use crate::rig::point::{Point, Thermometer};
@@ -15,7 +17,9 @@ use crate::rig::sample::{Quality, Sample};
 use chamber::control::split_range::Command;
 use chamber::lag::Record;
 use chamber::program::{TRAVEL_K_PER_MIN, Waiting};
-use chamber::watch::sensors::{Sensors, Unpowered};
+use chamber::watch::sensors::Sensors;
+use chamber::watch::slope::SlidingSlope;
+use chamber::watch::unpowered::Unpowered;
 use units::{RigTime, Span, Volt};
 
 const SECOND: Span = Span::ms(1_000);
@@ -66,6 +70,7 @@ pub struct Seconds {
     pub ambient_c: f64,
     /// What the chamber does; `None` before the first reading.
     pub work: Option<Work>,
+    experiment: Option<Experiment>,
     sensors: Sensors,
     unpowered: Unpowered,
     /// Command of the last second.
@@ -74,13 +79,18 @@ pub struct Seconds {
     pub pulses: Vec<(usize, Pulse)>,
     /// Place of the contact that gets the next pulse.
     next: usize,
+    /// The air, as pages show it.
+    curve: AirCurve,
+    /// Slope of the reference thermometer over a minute.
+    slope: SlidingSlope,
+    rate_k_per_min: Option<f64>,
     tick: RigTime,
     doing: Doing,
 }
 
 impl Seconds {
     /// Begins: closes the contactor while the heater is at zero.
-    pub fn begin(device: &Device, now: RigTime) -> Self {
+    pub fn begin(device: &Device, experiment: Option<Experiment>, now: RigTime) -> Self {
         let points = &device.points;
         let mut acts = vec![levels(device, Command::OFF)];
         acts.push(Act::Set(vec![(points.contactor, true)]));
@@ -90,11 +100,15 @@ impl Seconds {
             last: None,
             ambient_c: ROOM_C[1],
             work: None,
+            experiment,
             sensors: Sensors::default(),
             unpowered: Unpowered::default(),
             command: Command::OFF,
             pulses: Vec::new(),
             next: 0,
+            curve: AirCurve::default(),
+            slope: SlidingSlope::default(),
+            rate_k_per_min: None,
             tick: now,
             doing: Doing::Set(Runner::new(acts, now)),
         }
@@ -201,6 +215,7 @@ impl Seconds {
             self.record.push(f64::NAN);
         }
         self.record.push(reading.value);
+        self.draw(reading.value);
         let reference_c = Some(reading.value);
         self.last = Some(reading);
         self.check_chain(device, now, image)?;
@@ -221,9 +236,40 @@ impl Seconds {
         let Some(work) = &mut self.work else {
             return Ok(Some(Command::OFF));
         };
-        let next = work.step(device, &seen, &self.record, &events)?;
+        let recorded = (&self.record, &events as &dyn Fn() -> Vec<Events>);
+        let next = work.step(device, self.experiment, &seen, recorded)?;
+        self.ambient_c = work.ambient_c().unwrap_or(self.ambient_c);
         self.command = next.unwrap_or(Command::OFF);
         Ok(next)
+    }
+
+    /// Adds a second to the curve that pages show.
+    fn draw(&mut self, reference_c: f64) {
+        let second = u32::try_from(self.record.seconds()).unwrap_or(u32::MAX) - 1;
+        let set_c = self.work.as_ref().and_then(Work::set_c);
+        self.curve.push(second, set_c, reference_c);
+        self.rate_k_per_min = self.slope.step(reference_c);
+    }
+
+    /// Returns what pages show of this part of the test.
+    pub fn shown(&self) -> BatchShown {
+        let passes = match &self.work {
+            Some(Work::Passes(passes)) => passes.progress(),
+            None | Some(Work::Identification(_) | Work::Rest(..) | Work::Trial(_)) => None,
+        };
+        let (pass, passes) = passes.unzip();
+        let percent = |share: f64| (share * 1000.0).round() / 10.0;
+        BatchShown {
+            pass,
+            passes,
+            set_c: self.work.as_ref().and_then(Work::set_c),
+            reference_c: self.last.as_ref().map(|it| it.value),
+            rate_k_per_min: self.rate_k_per_min,
+            heater_pct: percent(self.command.heater),
+            vent_pct: percent(self.command.vent),
+            curve: self.curve.clone(),
+            switched: Vec::new(),
+        }
     }
 
     /// Checks thermometers and power outside of the passes, whose watch knows more.
@@ -239,7 +285,7 @@ impl Seconds {
         }
         let heats = seen
             .control_c
-            .is_some_and(|it| self.unpowered.step(it, power));
+            .is_some_and(|it| self.unpowered.step(it, self.command));
         match heats {
             true => Err(Finding::HeatWithoutCommand),
             false => Ok(()),
@@ -253,7 +299,8 @@ impl Seconds {
         self.record = Record::new(0.0, self.ambient_c);
         let windows = device.thermostat.windows(&device.recipe.limits);
         let operate_c = windows.map_or(reference_c, |[operate, _]| operate.low_c);
-        self.work = Some(Work::new(device, self.ambient_c, operate_c));
+        let is_experiment = self.experiment.is_some();
+        self.work = Some(Work::new(device, is_experiment, self.ambient_c, operate_c));
     }
 
     fn check_chain(&self, device: &Device, now: RigTime, image: &Image) -> Result<(), Finding> {
