@@ -150,6 +150,32 @@ pub enum FleetError {
         /// Error of the client library, of which `said` is the text.
         error: tokio_postgres::Error,
     },
+    /// Made-up histories do not go beside real ones.
+    #[error(
+        "{target}: found rigs of the plant {site}, expected a database without real rigs for made-up ones"
+    )]
+    RealRigs {
+        /// Database.
+        target: String,
+        /// A plant in it.
+        site: String,
+    },
+    /// The program has no thread for the connection.
+    #[error("no runtime for the connection: {error}")]
+    Runtime {
+        /// Error of the system.
+        error: std::io::Error,
+    },
+    /// No rig has this name.
+    #[error("{target}: found no rig {found}, expected one of {expected}")]
+    NoRig {
+        /// Database.
+        target: String,
+        /// Plant and rig asked for; `*` for any.
+        found: String,
+        /// Plants and rigs that there are, the first twenty.
+        expected: String,
+    },
     /// There is no schema of this program.
     #[error(
         "{target}: found no schema relayrig, expected one; run `relayrig fleet init` as its owner"
@@ -215,6 +241,9 @@ impl FleetError {
             | Self::NoSchema { .. }
             | Self::Foreign { .. }
             | Self::SchemaOlder { .. }
+            | Self::Runtime { .. }
+            | Self::NoRig { .. }
+            | Self::RealRigs { .. }
             | Self::Refused { .. } => false,
         }
     }

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod answers;
 mod once;
 mod proxy;
 mod refusals;
