@@ -55,6 +55,9 @@ pub(super) fn of_parts(
 impl Archive {
     /// Adds runs, values and reasons to the parts found.
     pub(super) fn completed(&self, found: Vec<Found>) -> Read<Vec<Part>> {
+        if found.is_empty() {
+            return Ok(Vec::new());
+        }
         let runs = self.runs_of(&found)?;
         let parts: Vec<&Part> = found.iter().map(|it| &it.part).collect();
         let mut values = self.values_of(&parts)?;

@@ -60,16 +60,24 @@ impl Draw {
         self.parts.get(at).cloned()
     }
 
-    /// Returns a parameter; rarely one that does not exist.
+    /// Returns a parameter, most often one that parts have; rarely one that does not exist.
     pub fn parameter(&mut self) -> String {
-        let at = self.below(self.parameters.len() + usize::from(self.once_in(40)));
-        let known = self.parameters.get(at).cloned();
-        known.unwrap_or_else(|| "no_such_v".to_owned())
+        if self.once_in(40) {
+            return "no_such_v".to_owned();
+        }
+        let measured = self.part().map(|it| it.values).unwrap_or_default();
+        let keys = match self.once_in(8) {
+            true => self.parameters.clone(),
+            false => measured.keys().cloned().collect(),
+        };
+        let at = self.below(keys.len());
+        keys.get(at).cloned().unwrap_or_default()
     }
 
     /// Returns the name of a lot; rarely one that does not exist.
     pub fn lot(&mut self) -> String {
-        let at = self.below(self.runs.len() + usize::from(self.once_in(40)));
+        let unknown = usize::from(self.once_in(40));
+        let at = self.below(self.runs.len() + unknown);
         let known = self.runs.get(at).map(|it| it.lot.clone());
         known.unwrap_or_else(|| "no such lot".to_owned())
     }

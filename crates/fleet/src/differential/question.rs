@@ -7,7 +7,7 @@ use history::report::Paper;
 use history::{Archive, Filter, OrderChoice, Part};
 use jiff::tz::TimeZone;
 use machine::dut::Recipe;
-use quality::Rules;
+use quality::rules::Rules;
 use serde::Serialize;
 use texts::Lang;
 

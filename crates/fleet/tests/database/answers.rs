@@ -47,7 +47,8 @@ fn a_database_answers_like_the_file() {
     let file = Archive::open(&rigs[1].db).unwrap();
     let there = database(&server, Some("rig-2"));
     let asked = compare((&file, &there), (250, 7), &[recipe]).unwrap();
-    assert_eq!(asked.different, Vec::<String>::new());
+    let different = &asked.different[..asked.different.len().min(3)];
+    assert_eq!(different, [""; 0], "{} differ", asked.different.len());
     assert!(asked.refused < 80 && asked.bytes > 100_000, "{asked:?}");
 }
 

@@ -98,7 +98,7 @@ impl Rig {
                 lot: Some(lot.to_owned()),
                 at_us,
                 who: who.to_owned(),
-                what: serde_json::json!({ "order": order, "speed": 0.5 }),
+                what: serde_json::json!({ "order": order, "speed": 0.5 }).to_string(),
                 ..OrderRecord::default()
             })
         };

@@ -2,7 +2,6 @@
 
 use super::{Filter, Select};
 use crate::OrderChoice;
-use crate::source::Dialect;
 
 impl Filter {
     /// Selects the runs of the filter.
@@ -71,38 +70,57 @@ impl Filter {
 
     /// Counts the parts judged in first tests, those of them that passed, and the parts that passed in a retest.
     pub(in super::super) fn lot_yield(&self) -> Select {
-        self.counted("", "", "")
-    }
-
-    /// Counts as [`Self::lot_yield`] does, rig by rig; the last column names the rig.
-    pub(in super::super) fn yield_by_rig(&self, dialect: Dialect) -> Select {
-        let join = match dialect {
-            Dialect::File => "",
-            Dialect::Server => " JOIN run ON run.id = part.run_id",
-        };
-        let rig = format!(", {} AS rig", dialect.rig());
-        self.counted(&rig, join, ", rig")
-    }
-
-    fn counted(&self, column: &str, join: &str, rig: &str) -> Select {
-        let mut tests = Select::new(format!(
-            "SELECT part.verdict AS verdict, part.run_id IN (SELECT run_id FROM retest) AS again{column} \
-             FROM part{join} WHERE part.verdict <> 'unjudged'"
-        ));
+        let mut tests = Select::new(
+            "SELECT part.verdict AS verdict, part.run_id IN (SELECT run_id FROM retest) AS again \
+             FROM part WHERE part.verdict <> 'unjudged'",
+        );
         self.run_conditions(&mut tests, "part");
         self.part_conditions(&mut tests, false);
-        let by_rig = if rig.is_empty() {
-            ""
-        } else {
-            " GROUP BY rig ORDER BY rig"
-        };
         Select {
             sql: format!(
                 "SELECT count(*) FILTER (WHERE NOT again), count(*) FILTER (WHERE NOT again AND verdict = 'pass'),
-                   count(*) FILTER (WHERE again AND verdict = 'pass'){rig} FROM ({}) AS tested{by_rig}",
+                   count(*) FILTER (WHERE again AND verdict = 'pass') FROM ({}) AS tested",
                 tests.sql
             ),
             values: tests.values,
         }
+    }
+
+    /// Counts the judged parts by time span, run and verdict. Span `n` ends before `edges[n]`, microseconds, ascending; the
+    /// last span has no end.
+    pub(in super::super) fn by_span(&self, edges: &[i64]) -> Select {
+        let mut counted = Select::new(format!(
+            "SELECT {} AS span, part.run_id, part.verdict, count(*) FROM part WHERE part.verdict <> 'unjudged'",
+            span(edges, 0)
+        ));
+        self.run_conditions(&mut counted, "part");
+        self.part_conditions(&mut counted, false);
+        counted.sql.push_str(" GROUP BY 1, 2, 3");
+        counted
+    }
+}
+
+/// Returns the expression for the number of the span in which a part was judged, from `first` on, as a search by halves.
+fn span(edges: &[i64], first: usize) -> String {
+    let half = edges.len() / 2;
+    let Some(edge) = edges.get(half) else {
+        return first.to_string();
+    };
+    format!(
+        "CASE WHEN part.judged_at_us < {edge} THEN {} ELSE {} END",
+        span(&edges[..half], first),
+        span(&edges[half + 1..], first + half + 1)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_are_found_by_halves() {
+        assert_eq!(span(&[], 3), "3");
+        let two = "CASE WHEN part.judged_at_us < 20 THEN CASE WHEN part.judged_at_us < 10 THEN 0 ELSE 1 END ELSE 2 END";
+        assert_eq!(span(&[10, 20], 0), two);
     }
 }

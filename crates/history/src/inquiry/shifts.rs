@@ -2,12 +2,13 @@
 
 use super::{InquiryError, Result};
 use crate::error::Doing;
-use crate::source::Row;
+use crate::source::{Read, Row};
 use crate::{Archive, Filter, LotYield, Moment};
 use jiff::civil::Date;
 use jiff::tz::TimeZone;
 use jiff::{Span, Timestamp};
 use serde::Serialize;
+use std::collections::{BTreeMap, HashMap};
 
 /// Longest time span, days.
 const LONGEST: i32 = 400;
@@ -35,7 +36,7 @@ pub struct ShiftYield {
     pub from: Moment,
     /// End, or that of the time span.
     pub to: Moment,
-    /// Counts; suspect parts are not counted here.
+    /// Counts; without suspect parts.
     #[serde(flatten)]
     pub counts: LotYield,
 }
@@ -59,30 +60,44 @@ pub fn by_shift(
     let span = filter.since.zip(filter.until);
     let span =
         span.ok_or_else(|| InquiryError::member("since", "missing: shifts need a time span"))?;
+    let spans = spans(shifts, zone, span)?;
+    let mut edges: Vec<i64> = spans.iter().flat_map(|it| [it.from.0, it.to.0]).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let counts = archive.by_span(filter, &edges)?;
+    let of_span = |it: ShiftYield| {
+        let n = edges.partition_point(|edge| *edge <= it.from.0);
+        let rigs = counts
+            .range((n, None)..)
+            .take_while(move |((of, _), _)| *of == n);
+        rigs.map(move |((_, rig), counts)| ShiftYield {
+            rig: rig.clone(),
+            counts: *counts,
+            ..it.clone()
+        })
+    };
+    Ok(spans.into_iter().flat_map(of_span).collect())
+}
+
+/// Returns every shift within the time span, without counts, in order of time.
+fn spans(shifts: &[Shift], zone: &TimeZone, span: (Moment, Moment)) -> Result<Vec<ShiftYield>> {
     let mut all = Vec::new();
     for day in days(span, zone)? {
         for shift in shifts {
             let Some((from, to)) = clipped(day, shift, zone, span) else {
                 continue;
             };
-            let of_shift = Filter {
-                since: Some(from),
-                until: Some(to),
-                ..filter.clone()
-            };
-            for (rig, counts) in archive.yield_by_rig(&of_shift)? {
-                all.push(ShiftYield {
-                    day: day.to_string(),
-                    shift: shift.name.clone(),
-                    rig,
-                    from,
-                    to,
-                    counts,
-                });
-            }
+            all.push(ShiftYield {
+                day: day.to_string(),
+                shift: shift.name.clone(),
+                rig: None,
+                from,
+                to,
+                counts: LotYield::default(),
+            });
         }
     }
-    all.sort_by(|a, b| (a.from, &a.rig).cmp(&(b.from, &b.rig)));
+    all.sort_by_key(|it| it.from);
     Ok(all)
 }
 
@@ -128,23 +143,58 @@ fn clipped(
     (from < to).then_some((from, to))
 }
 
+/// Counts by number of the span and rig.
+type Counts = BTreeMap<(usize, Option<String>), LotYield>;
+
 impl Archive {
-    /// Counts the selected parts as [`Archive::lot_yield`] does, rig by rig, suspect parts aside; the file of a rig does not
-    /// name it.
-    fn yield_by_rig(&self, filter: &Filter) -> crate::Result<Vec<(Option<String>, LotYield)>> {
+    /// Counts the selected parts as [`Archive::lot_yield`] does, suspect parts aside, by time span and rig; the file of a rig
+    /// does not name it.
+    fn by_span(&self, filter: &Filter, edges: &[i64]) -> crate::Result<Counts> {
+        const DOING: &str = "counting the parts of shifts";
         let read = |row: &Row<'_>| {
-            let count = |at: usize| row.get::<i64>(at).map(i64::unsigned_abs);
-            let counts = LotYield {
-                parts: count(0)?,
-                first_pass: count(1)?,
-                retest_pass: count(2)?,
-                suspect: 0,
-            };
-            Ok((row.get(3)?, counts))
+            let (span, parts): (i64, i64) = (row.get(0)?, row.get(3)?);
+            let verdict: String = row.get(2)?;
+            Ok((
+                span.unsigned_abs() as usize,
+                row.get::<i64>(1)?,
+                verdict,
+                parts.unsigned_abs(),
+            ))
         };
-        let select = filter.yield_by_rig(self.source.dialect());
-        let counted = select.rows(&self.source, read);
-        counted.doing("counting the parts of a shift")
+        let counted = filter
+            .by_span(edges)
+            .rows(&self.source, read)
+            .doing(DOING)?;
+        let mut runs: Vec<i64> = counted.iter().map(|it| it.1).collect();
+        runs.sort_unstable();
+        runs.dedup();
+        let runs = self.rigs_of(&runs).doing(DOING)?;
+        let mut all = Counts::new();
+        for (span, run, verdict, parts) in counted {
+            let (rig, again) = runs.get(&run).cloned().unwrap_or_default();
+            let of = all.entry((span, rig)).or_default();
+            let passed = if verdict == "pass" { parts } else { 0 };
+            match again {
+                true => of.retest_pass += passed,
+                false => (of.parts, of.first_pass) = (of.parts + parts, of.first_pass + passed),
+            }
+        }
+        Ok(all)
+    }
+
+    /// Returns for each run its rig, and whether it was a retest.
+    fn rigs_of(&self, runs: &[i64]) -> Read<HashMap<i64, (Option<String>, bool)>> {
+        let dialect = self.source.dialect();
+        let (among, values) = dialect.among("run.id", runs);
+        let sql = format!(
+            "SELECT run.id, {}, run.id IN (SELECT run_id FROM retest) FROM run WHERE {among}",
+            dialect.rig()
+        );
+        let read = |row: &Row<'_>| Ok((row.get(0)?, (row.get(1)?, row.get(2)?)));
+        match runs {
+            [] => Ok(HashMap::new()),
+            _ => Ok(self.source.rows(&sql, &values, read)?.into_iter().collect()),
+        }
     }
 }
 
