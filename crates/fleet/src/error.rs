@@ -282,9 +282,26 @@ fn said(error: &tokio_postgres::Error) -> String {
     cause.to_string()
 }
 
+/// Returns true when the connection could not be made or broke, and false when both sides could not agree on it.
+fn is_broken(error: &tokio_postgres::Error) -> bool {
+    let mut cause: Option<&dyn std::error::Error> = Some(error);
+    while let Some(it) = cause {
+        if it.is::<std::io::Error>() {
+            return true;
+        }
+        cause = it.source();
+    }
+    error.is_closed()
+}
+
 fn remedy(error: &tokio_postgres::Error) -> &'static str {
     let Some(code) = error.code() else {
-        return "Check address, network and server; the rows stay in the queue";
+        return match is_broken(error) {
+            true => "Check address, network and server; the rows stay in the queue",
+            false => {
+                "Check the password (PGPASSWORD, or the file of PGPASSFILE) and `tls` and `ca` of fleet.toml"
+            }
+        };
     };
     let of_class = |class: &str| code.code().starts_with(class);
     if of_class("28") {

@@ -36,14 +36,14 @@ INSERT INTO relayrig.history (rig_id, epoch, uuid, host, program)
 /// Makes the runs of history `$1` with `$2` parts from `$3` on, one each `$4` microseconds.
 const RUNS: &str = "
 INSERT INTO relayrig.run (id, history_id, uuid, lot, number, recipe_hash, opened_at_us, source, written_by)
-  SELECT ($1::bigint << 40) + n, $1, gen_random_uuid()::text, 'L-' || $1::int || '-' || n, 1, 'made-up',
+  SELECT ($1::bigint << 40) + n, $1::bigint, gen_random_uuid()::text, 'L-' || $1::int || '-' || n, 1, 'made-up',
     $3::bigint + (n - 1) * 1000 * $4::bigint, 'simulated', 'relayrig'
   FROM generate_series(1, ($2::bigint + 999) / 1000) AS n";
 
 /// Makes the parts: 4 % fail, 0.5 % are void; half of them land after they were sent.
 const PARTS: &str = "
 INSERT INTO relayrig.part
-  SELECT ($1::bigint << 40) + n, $1, ($1::bigint << 40) + 1 + (n - 1) / 1000, 'lot', 1 + (n - 1) % 1000,
+  SELECT ($1::bigint << 40) + n, $1::bigint, ($1::bigint << 40) + 1 + (n - 1) / 1000, 'lot', 1 + (n - 1) % 1000,
     'S-' || $1::int || '-' || n, verdict, bin, CASE verdict WHEN 'pass' THEN '[]' ELSE '[\"made_up_1_v high\"]' END,
     $3::bigint + n * $4::bigint, 0.74, 1.69, CASE WHEN n % 2 = 0 THEN bin END,
     CASE WHEN n % 2 = 0 THEN $3::bigint + n * $4::bigint + 400000 END
@@ -54,7 +54,7 @@ INSERT INTO relayrig.part
 const CHANGES: &str = "
 INSERT INTO relayrig.part_change
   SELECT id, id, judged_at_us, verdict, bin, reasons, cycle_s, bin, judged_at_us + 400000 FROM relayrig.part
-  WHERE history_id = $1 AND landed_bin IS NULL AND judged_at_us > $3 - $4 + 0 * $2::bigint";
+  WHERE history_id = $1::bigint AND landed_bin IS NULL AND judged_at_us > $3::bigint - $4::bigint + 0 * $2::bigint";
 
 /// Makes 25 measurements of each part, normally distributed.
 const MEASUREMENTS: &str = "
@@ -63,7 +63,7 @@ INSERT INTO relayrig.measurement
     7 + 0.3 * sqrt(-2 * ln(1 - random())) * cos(6.283185307179586 * random()), 0.021, NULL, 9, part.verdict, 'lot',
     '{\"gain\":0.006,\"noise\":0.004,\"temperature\":0.003}'
   FROM relayrig.part CROSS JOIN relayrig.parameter
-  WHERE part.history_id = $1 AND parameter.key LIKE 'made\\_up\\_%' AND judged_at_us > $3 - $4 + 0 * $2::bigint";
+  WHERE part.history_id = $1::bigint AND parameter.key LIKE 'made\\_up\\_%' AND judged_at_us > $3::bigint - $4::bigint + 0 * $2::bigint";
 
 /// Makes the histories; calls `made` with the number of parts after each rig.
 ///
@@ -106,9 +106,12 @@ pub async fn generate(
             .map_err(doing)?
             .get(0);
         for statement in [RUNS, PARTS, CHANGES, MEASUREMENTS] {
-            tx.execute(statement, &[&history, &each, &since_us, &step_us])
-                .await
-                .map_err(doing)?;
+            tx.execute(
+                statement,
+                &[&i64::from(history), &each, &since_us, &step_us],
+            )
+            .await
+            .map_err(doing)?;
         }
         tx.commit().await.map_err(doing)?;
         made(n * each);

@@ -48,7 +48,7 @@ impl Reader {
         let runtime = runtime.map_err(|error| FleetError::Runtime { error })?;
         let (link, scope) = runtime.block_on(async {
             let link = Link::open(target).await?;
-            let begin = "SET idle_in_transaction_session_timeout = '1h'; SET enable_partitionwise_join = on;
+            let begin = "SET idle_in_transaction_session_timeout = '1h'; SET enable_partitionwise_join = on; SET jit = off; SET work_mem = '64MB';
                 BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
             link.step(DOING, link.client.batch_execute(begin)).await?;
             let scope = scope(&link, rigs).await?;

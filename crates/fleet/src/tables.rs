@@ -23,6 +23,22 @@ enum Rows {
 
 use Rows::{Common, Events, OfRigs};
 
+/// The parts as they are now. Few parts were judged otherwise after they were sent; the other changes are looked up only for a
+/// question that needs them.
+const PARTS: &str = "SELECT it.id, it.history_id, it.run_id, it.kind, it.seq, it.serial, it.judged_at_us, it.test_s,
+      coalesce(other.verdict, it.verdict) AS verdict,
+      CASE WHEN other.event IS NULL THEN it.bin ELSE other.bin END AS bin,
+      coalesce(other.reasons, it.reasons) AS reasons,
+      coalesce((SELECT cycle_s FROM relayrig.part_change AS c WHERE c.part_id = it.id ORDER BY event DESC LIMIT 1),
+        it.cycle_s) AS cycle_s,
+      coalesce((SELECT landed_bin FROM relayrig.part_change AS c WHERE c.part_id = it.id ORDER BY event DESC LIMIT 1),
+        it.landed_bin) AS landed_bin,
+      coalesce((SELECT landed_at_us FROM relayrig.part_change AS c WHERE c.part_id = it.id ORDER BY event DESC LIMIT 1),
+        it.landed_at_us) AS landed_at_us
+    FROM relayrig.part AS it LEFT JOIN relayrig.part_rejudged AS other ON other.part_id = it.id AND NOT EXISTS (SELECT 1
+      FROM relayrig.part_rejudged AS later WHERE later.part_id = other.part_id AND later.event > other.event)
+    WHERE true";
+
 /// Every table of the file that questions name. Lots of one name are one lot, whatever the rig.
 const TABLES: [(&str, Rows); 17] = [
     ("parameter", Common("SELECT id, key, meaning FROM relayrig.parameter")),
@@ -37,7 +53,7 @@ const TABLES: [(&str, Rows); 17] = [
           (SELECT body ->> 'calibration_hash' FROM relayrig.event WHERE kind = 'run_state' AND row_id = it.id
             ORDER BY id DESC LIMIT 1) AS calibration_hash
         FROM relayrig.run AS it WHERE true", "it.history_id", "")),
-    ("part", OfRigs("SELECT * FROM relayrig.part_now WHERE true", "history_id", "")),
+    ("part", OfRigs(PARTS, "it.history_id", "")),
     ("measurement", OfRigs("SELECT * FROM relayrig.measurement WHERE true", "(run_id >> 40)", "")),
     ("sample", OfRigs("SELECT * FROM relayrig.sample WHERE true", "(part_id >> 40)", "")),
     ("reason", OfRigs("SELECT * FROM relayrig.reason WHERE true", "(part_id >> 40)", "")),

@@ -8,7 +8,7 @@ use fleet::{Reader, Rigs, set_up};
 use history::{Archive, Filter};
 
 /// Opens the database for the rigs of this name.
-fn database(server: &Server, rig: Option<&str>) -> Archive {
+pub fn database(server: &Server, rig: Option<&str>) -> Archive {
     let rigs = Rigs {
         site: None,
         rig: rig.map(str::to_owned),
@@ -18,7 +18,7 @@ fn database(server: &Server, rig: Option<&str>) -> Archive {
 }
 
 /// Runs `work` on a runtime of its own; a reader has its own too.
-fn wait<T>(work: impl Future<Output = T>) -> T {
+pub fn wait<T>(work: impl Future<Output = T>) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build();
@@ -35,6 +35,9 @@ fn two_rigs() -> (Server, [Rig; 2]) {
         rig.gates("A");
         rig.run("B", 25, 3);
         rig.run("A", 10, 2);
+        rig.cut_off("C", || {
+            wait(rig.push(&server.owner())).unwrap();
+        });
         wait(rig.push(&server.owner())).unwrap();
     }
     (server, rigs)

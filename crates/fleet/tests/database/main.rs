@@ -6,8 +6,10 @@
 
 mod answers;
 mod once;
+mod plans;
 mod proxy;
 mod refusals;
 mod rig;
 mod server;
 mod storm;
+mod troubles;

@@ -4,8 +4,9 @@ use config::{FleetSettings, FleetTarget};
 use fleet::{Pushed, Result, push};
 use history::outbox::Outbox;
 use history::{
-    AlarmRecord, HoldReason, LandingRecord, LotRecord, LotState, LotStateRecord, MeasurementRecord,
-    OrderRecord, PartRecord, ReferenceCheckRecord, Row, SampleRecord, Store, snapshot_hash,
+    AlarmRecord, HoldReason, InterruptedRecord, LandingRecord, LotRecord, LotState, LotStateRecord,
+    MeasurementRecord, OrderRecord, PartRecord, ReferenceCheckRecord, Row, SampleRecord, Store,
+    snapshot_hash,
 };
 use machine::dut::Reason;
 use machine::station::catalogue::AlarmCode;
@@ -68,6 +69,34 @@ impl Rig {
             })])
             .unwrap();
         store.close_lot(lot, BEGIN_US + 1_000_000_000).unwrap();
+    }
+
+    /// Tests four parts of a lot, does `between`, and then notes that the last test was interrupted and another part landed.
+    pub fn cut_off(&self, lot: &str, between: impl FnOnce()) {
+        let mut store = Store::open(&self.db).unwrap();
+        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
+        let record = LotRecord {
+            lot: lot.to_owned(),
+            recipe: "jzc-22f-012".to_owned(),
+            recipe_hash: snapshot_hash(&recipe_snapshot),
+            recipe_snapshot,
+            opened_at_us: BEGIN_US,
+            ..LotRecord::default()
+        };
+        store.begin_lot(&record).unwrap();
+        let parts: Vec<Row> = (1..=4).map(|seq| Row::Part(part(lot, seq, 3))).collect();
+        store.record(&parts).unwrap();
+        between();
+        let interrupted = Row::Interrupted(InterruptedRecord {
+            lot: lot.to_owned(),
+            kind: "lot".to_owned(),
+            seq: 4,
+            reason: Reason::from_text("interrupted: door_open"),
+        });
+        store
+            .record(&[interrupted, Row::Landed(landing(lot, 3))])
+            .unwrap();
+        store.close_lot(lot, at(9)).unwrap();
     }
 
     /// Records what happens around the run of a lot after it: a good and a failed reference check, orders, a hold.
