@@ -3,6 +3,7 @@
 //! The databases are those of `fleet.toml`; `--target` names one.
 
 mod check;
+mod generate;
 mod init;
 mod push;
 mod status;
@@ -39,9 +40,14 @@ enum Command {
     /// What each database has and lacks
     #[command(after_help = "Example: relayrig fleet status")]
     Status(status::StatusArgs),
+    /// Fill a database without real rigs with made-up histories, for trying questions at size
+    #[command(after_help = "Example: relayrig fleet generate --parts 4000000 --rigs 200")]
+    Generate(generate::GenerateArgs),
     /// Check that the databases take this history; exit status 1 when one does not
-    #[command(after_help = "Example: relayrig fleet check")]
-    Check,
+    #[command(
+        after_help = "Examples:\n  relayrig fleet check\n  relayrig fleet check --questions 500"
+    )]
+    Check(check::CheckArgs),
 }
 
 /// Runs the command.
@@ -52,7 +58,8 @@ pub fn run(files: &Files, args: &FleetArgs) -> anyhow::Result<Exit> {
         Command::Init(args) => init::run(&targets, args),
         Command::Push(args) => push::run(files, (&fleet, &targets), args),
         Command::Status(args) => status::run(files, (&fleet, &targets), args),
-        Command::Check => check::run(files, (&fleet, &targets)),
+        Command::Generate(args) => generate::run(&targets, args),
+        Command::Check(args) => check::run(files, (&fleet, &targets), args),
     };
     super::unless_pipe_closed(done, Exit::Done)
 }

@@ -7,6 +7,7 @@ mod backup;
 mod compare;
 mod export;
 mod filter;
+mod from;
 mod generate;
 mod import;
 mod lots;
@@ -20,6 +21,7 @@ mod query;
 mod rejudge;
 mod report;
 mod restore;
+mod shifts;
 mod show;
 mod spc;
 mod stats;
@@ -37,6 +39,8 @@ use std::path::Path;
 /// Arguments of `history`.
 #[derive(Debug, Args)]
 pub struct HistoryArgs {
+    #[command(flatten)]
+    from: from::FromArgs,
     #[command(subcommand)]
     command: Box<Command>,
 }
@@ -75,6 +79,10 @@ enum Command {
     #[command(after_help = "Examples:\n  relayrig history pareto --lot A\n  \
         relayrig history pareto --alarms --since -7d")]
     Pareto(pareto::ParetoArgs),
+    /// Yield and output by shift, of the last seven days without --since; the shifts are those of fleet.toml
+    #[command(after_help = "Examples:\n  relayrig history shifts --since -30d\n  \
+        relayrig history shifts --from postgres://office@db/relayrig --site suzhou")]
+    Shifts(shifts::ShiftsArgs),
     /// Control charts of a parameter, or of the share of every bin
     #[command(
         after_help = "Examples:\n  relayrig history spc --param operate_voltage_v --lot A\n  \
@@ -142,7 +150,7 @@ enum Command {
 
 /// Runs the command on the history. An error is bad input: exit status 2.
 pub fn run(files: &Files, args: HistoryArgs) -> anyhow::Result<Exit> {
-    let done = dispatch(files, *args.command).map_err(by_option);
+    let done = dispatch(files, &args.from, *args.command).map_err(by_option);
     super::unless_pipe_closed(done, Exit::Done)
 }
 
@@ -160,30 +168,63 @@ fn by_option(error: anyhow::Error) -> anyhow::Error {
     }
 }
 
-fn dispatch(files: &Files, command: Command) -> anyhow::Result<Exit> {
+fn dispatch(files: &Files, from: &from::FromArgs, command: Command) -> anyhow::Result<Exit> {
     let (config, db) = (&files.config, files.db.as_path());
+    if let Some(of_file) = command.of_file() {
+        from.refuse(of_file)?;
+    }
+    let archive = || from.open(files);
     match command {
         Command::Import(args) => return import::run(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),
         Command::Check => return check(db),
         Command::Restore(args) => return restore::run(files, &args),
         Command::Prune(args) => return prune::run(db, &args),
-        Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
-        Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
-        Command::Query(args) => query::run(&Archive::open(db)?, &args)?,
-        Command::Alarms(args) => alarms::run(&Archive::open(db)?, &args)?,
-        Command::Plans(args) => plans::run(&Archive::open(db)?, &args)?,
-        Command::Orders(args) => orders::run(&Archive::open(db)?, &args)?,
-        Command::Stats(args) => stats::run(&Archive::open(db)?, &args)?,
-        Command::Compare(args) => compare::run(&Archive::open(db)?, &args)?,
-        Command::Pareto(args) => pareto::run(&Archive::open(db)?, &args)?,
-        Command::Spc(args) => spc::run(&Archive::open(db)?, &args)?,
-        Command::Report(args) => report::run(&Archive::open(db)?, &args)?,
-        Command::Rejudge(args) => rejudge::run(config, &Archive::open(db)?, &args)?,
-        Command::Export(args) => export::run(db, &args)?,
+        Command::List(args) => lots::run(&archive()?, &args)?,
+        Command::Show(args) => show::run(&archive()?, &args)?,
+        Command::Query(args) => query::run(&archive()?, &args)?,
+        Command::Alarms(args) => alarms::run(&archive()?, &args)?,
+        Command::Plans(args) => plans::run(&archive()?, &args)?,
+        Command::Orders(args) => orders::run(&archive()?, &args)?,
+        Command::Stats(args) => stats::run(&archive()?, &args)?,
+        Command::Compare(args) => compare::run(&archive()?, &args)?,
+        Command::Pareto(args) => pareto::run(&archive()?, &args)?,
+        Command::Spc(args) => spc::run(&archive()?, &args)?,
+        Command::Shifts(args) => shifts::run(config, &archive()?, &args)?,
+        Command::Report(args) => report::run(&archive()?, &args)?,
+        Command::Rejudge(args) => rejudge::run(config, &archive()?, &args)?,
+        Command::Export(args) => export::run(&archive()?, from.file(db), &args)?,
         Command::Backup(args) => backup::run(files, &args)?,
     }
     Ok(Exit::Done)
+}
+
+impl Command {
+    /// Returns the name of a command that works on the file of a rig alone.
+    const fn of_file(&self) -> Option<&'static str> {
+        match self {
+            Self::Import(_) => Some("import"),
+            Self::Generate(_) => Some("generate"),
+            Self::Check => Some("check"),
+            Self::Restore(_) => Some("restore"),
+            Self::Prune(_) => Some("prune"),
+            Self::Backup(_) => Some("backup"),
+            Self::Plans(_) => Some("plans"),
+            Self::List(_)
+            | Self::Show(_)
+            | Self::Query(_)
+            | Self::Alarms(_)
+            | Self::Orders(_)
+            | Self::Stats(_)
+            | Self::Compare(_)
+            | Self::Pareto(_)
+            | Self::Spc(_)
+            | Self::Shifts(_)
+            | Self::Report(_)
+            | Self::Rejudge(_)
+            | Self::Export(_) => None,
+        }
+    }
 }
 
 /// Checks the file; damage gives exit status 1, not an error.

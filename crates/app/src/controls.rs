@@ -3,6 +3,7 @@
 use super::stop_signals::StopSignals;
 use super::traces::Traces;
 use anyhow::Context;
+use machine::station::trouble::Alarm;
 use machine::view::{LineTraffic, View};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,6 +21,8 @@ pub struct Controls {
     pub attended: bool,
     /// Sends the view to the screens.
     pub view: watch::Sender<View>,
+    /// Sends the alarms about the databases of the fleet to the cycle, while they last.
+    pub fleet: watch::Sender<Vec<Alarm>>,
     /// Traffic of the current run; `None` before its lines are open.
     traces: Arc<Mutex<Option<Traces>>>,
 }
@@ -32,6 +35,7 @@ impl Controls {
             abort: Arc::new(AtomicBool::new(false)),
             attended,
             view: watch::channel(View::default()).0,
+            fleet: watch::channel(Vec::new()).0,
             traces: Arc::default(),
         }
     }

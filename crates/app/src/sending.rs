@@ -1,9 +1,10 @@
 //! Sends the history to the databases of `fleet.toml` while a rig runs. The threads that send share nothing with that of
-//! the rig but the history file and the view.
+//! the rig but the history file, the view and the alarms.
 
 use super::controls::Controls;
 use super::order::Files;
 use fleet::{Pusher, TargetState};
+use machine::station::trouble::Alarm;
 use machine::view::FleetView;
 
 /// Starts to send; returns `None` when `fleet.toml` names no database. Ends when the value is dropped.
@@ -15,8 +16,14 @@ pub(super) fn start(files: &Files, controls: &Controls) -> anyhow::Result<Option
     if fleet.targets.is_empty() {
         return Ok(None);
     }
-    let view = controls.view.clone();
+    let (view, alarms) = (controls.view.clone(), controls.fleet.clone());
     let told = move |states: &[TargetState]| {
+        let late: Vec<Alarm> = states.iter().filter_map(alarm).collect();
+        alarms.send_if_modified(|alarms| {
+            let changed = *alarms != late;
+            *alarms = late;
+            changed
+        });
         let fleet: Vec<FleetView> = states.iter().map(shown).collect();
         view.send_if_modified(|view| {
             let changed = view.fleet != fleet;
@@ -29,6 +36,12 @@ pub(super) fn start(files: &Files, controls: &Controls) -> anyhow::Result<Option
         files.db.clone(),
         Box::new(told),
     )))
+}
+
+/// Returns the alarm about a database that lacks parts for too long.
+fn alarm(state: &TargetState) -> Option<Alarm> {
+    let late = state.is_late();
+    late.then(|| Alarm::fleet_late(&state.url, state.alarm_after_s))
 }
 
 fn shown(state: &TargetState) -> FleetView {

@@ -33,7 +33,7 @@ pub enum SampleChoice {
 }
 
 /// A database.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 pub struct FleetTarget {
     /// `postgres://USER@HOST:PORT/DATABASE`, without password.
     pub url: String,
@@ -50,6 +50,42 @@ pub struct FleetTarget {
     pub alarm_after_s: u32,
 }
 
+/// A shift of the plant, in local time of each day.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+pub struct Shift {
+    /// Name.
+    pub name: String,
+    /// Begin, `HH:MM`.
+    pub start: String,
+    /// End, `HH:MM`; at or before `start`: on the next day.
+    pub end: String,
+}
+
+/// Minutes of a day.
+const DAY_MIN: u16 = 24 * 60;
+
+impl Shift {
+    /// Returns begin and end in minutes from the midnight before it begins; the end is at most a day after the begin.
+    #[must_use]
+    pub fn minutes(&self) -> (u16, u16) {
+        let [start, end] = [&self.start, &self.end].map(|it| minute(it).unwrap_or_default());
+        match end > start {
+            true => (start, end),
+            false => (start, end + DAY_MIN),
+        }
+    }
+}
+
+/// Returns the minute of the day of `HH:MM`.
+fn minute(text: &str) -> Option<u16> {
+    let (hour, minute) = text.split_once(':')?;
+    let two = |it: &str, limit| {
+        let digits = it.len() == 2 && it.bytes().all(|it| it.is_ascii_digit());
+        it.parse().ok().filter(|it: &u16| digits && *it < limit)
+    };
+    Some(60 * two(hour, 24)? + two(minute, 60)?)
+}
+
 /// What `fleet.toml` says.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 pub struct FleetSettings {
@@ -62,6 +98,9 @@ pub struct FleetSettings {
     /// Databases.
     #[serde(default, rename = "target")]
     pub targets: Vec<FleetTarget>,
+    /// Shifts of the plant.
+    #[serde(default, rename = "shift")]
+    pub shifts: Vec<Shift>,
 }
 
 const fn an_hour_s() -> u32 {
@@ -93,6 +132,7 @@ fn check(fleet: &FleetSettings) -> Result<(), Fault> {
             ));
         }
     }
+    check_shifts(&fleet.shifts)?;
     for (place, target) in fleet.targets.iter().enumerate() {
         check_target(&format!("target.{place}"), target)?;
         let same = |it: &FleetTarget| it.url == target.url;
@@ -103,6 +143,43 @@ fn check(fleet: &FleetSettings) -> Result<(), Fault> {
                 "a database of its own",
             );
             return Err(fault.against(format!("target.{other}.url")));
+        }
+    }
+    Ok(())
+}
+
+fn check_shifts(shifts: &[Shift]) -> Result<(), Fault> {
+    let mut taken: Vec<(u16, usize)> = Vec::new();
+    for (place, shift) in shifts.iter().enumerate() {
+        for (key, text) in [("start", &shift.start), ("end", &shift.end)] {
+            if minute(text).is_none() {
+                let expected = "a time of the day from \"00:00\" to \"23:59\"";
+                return Err(Fault::new(
+                    format!("shift.{place}.{key}"),
+                    quoted(text),
+                    expected,
+                ));
+            }
+        }
+        if shift.name.is_empty() {
+            return Err(Fault::new(
+                format!("shift.{place}.name"),
+                "nothing",
+                "a name",
+            ));
+        }
+        let (start, end) = shift.minutes();
+        for minute in (start..end).map(|it| it % DAY_MIN) {
+            if let Some((_, other)) = taken.iter().find(|(it, _)| *it == minute) {
+                let span = format!("{} to {}", shift.start, shift.end);
+                let fault = Fault::new(
+                    format!("shift.{place}.start"),
+                    span,
+                    "shifts that do not overlap",
+                );
+                return Err(fault.against(format!("shift.{other}.start")));
+            }
+            taken.push((minute, place));
         }
     }
     Ok(())
@@ -146,7 +223,8 @@ mod tests {
 
     /// A correct file, to which each case makes one change.
     const GOOD: &str = "site = \"suzhou\"\nrig = \"rig-07\"\n[[target]]\nurl = \"postgres://rig@db:5432/relayrig\"\n\
-        tls = \"off\"\n";
+        tls = \"off\"\n[[shift]]\nname = \"early\"\nstart = \"06:00\"\nend = \"14:00\"\n[[shift]]\nname = \"night\"\n\
+        start = \"22:00\"\nend = \"06:00\"\n";
 
     /// Returns what the check of a configuration with this file says.
     fn said(text: &str) -> String {
@@ -200,6 +278,16 @@ mod tests {
                 "site",
                 "sight",
                 "sight: found an unknown key, expected one of site, rig, target",
+            ),
+            (
+                "end = \"06:00\"",
+                "end = \"6:00\"",
+                "shift[1].end: found \"6:00\", expected a time of the day",
+            ),
+            (
+                "end = \"06:00\"",
+                "end = \"06:01\"",
+                "shift[1].start: found 22:00 to 06:01, expected shifts that do not overlap",
             ),
         ];
         for (old, new, expected) in cases {

@@ -64,7 +64,7 @@ mod tests;
 pub use card::load_card;
 pub use error::ConfigError;
 pub use faults::{ConfigFaults, check_all};
-pub use fleet::{FleetSettings, FleetTarget, SampleChoice, TlsChoice, load_fleet};
+pub use fleet::{FleetSettings, FleetTarget, SampleChoice, Shift, TlsChoice, load_fleet};
 pub use folder::{Folder, Memory};
 pub use init::{InitError, init};
 pub use instruments::{folder_of_profiles, instrument_names, load_instrument};

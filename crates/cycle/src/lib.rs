@@ -100,6 +100,8 @@ pub struct CycleLinks {
     pub epoch_us: i64,
     /// State of the history; the recorder sets it.
     pub history: watch::Receiver<HistoryState>,
+    /// Alarms about the databases of the fleet while they last.
+    pub fleet: watch::Receiver<Vec<Alarm>>,
     /// Carries the readings of the code reader; `None` in a lot without one.
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Carries snapshots to the screens; `None` on a rig without a screen.
@@ -341,6 +343,7 @@ impl Cycle {
             host_late: self.lateness.explaining(&self.wiring),
             readings: std::mem::take(&mut self.readings),
             reader: self.reader.clone(),
+            fleet: self.links.fleet.borrow().clone(),
             stop: self.links.stop.load(Ordering::Acquire),
         };
         self.station.step(now, inputs)

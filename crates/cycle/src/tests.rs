@@ -158,6 +158,7 @@ impl Bench {
             orders: mpsc::channel(1).1,
             epoch_us: 0,
             history: watch::channel(HistoryState::Written).1,
+            fleet: watch::channel(Vec::new()).1,
             readings: None,
             snapshots: None,
         };

@@ -150,6 +150,32 @@ pub enum FleetError {
         /// Error of the client library, of which `said` is the text.
         error: tokio_postgres::Error,
     },
+    /// Made-up histories do not go beside real ones.
+    #[error(
+        "{target}: found rigs of the plant {site}, expected a database without real rigs for made-up ones"
+    )]
+    RealRigs {
+        /// Database.
+        target: String,
+        /// A plant in it.
+        site: String,
+    },
+    /// The program has no thread for the connection.
+    #[error("no runtime for the connection: {error}")]
+    Runtime {
+        /// Error of the system.
+        error: std::io::Error,
+    },
+    /// No rig has this name.
+    #[error("{target}: found no rig {found}, expected one of {expected}")]
+    NoRig {
+        /// Database.
+        target: String,
+        /// Plant and rig asked for; `*` for any.
+        found: String,
+        /// Plants and rigs that there are, the first twenty.
+        expected: String,
+    },
     /// There is no schema of this program.
     #[error(
         "{target}: found no schema relayrig, expected one; run `relayrig fleet init` as its owner"
@@ -215,6 +241,9 @@ impl FleetError {
             | Self::NoSchema { .. }
             | Self::Foreign { .. }
             | Self::SchemaOlder { .. }
+            | Self::Runtime { .. }
+            | Self::NoRig { .. }
+            | Self::RealRigs { .. }
             | Self::Refused { .. } => false,
         }
     }
@@ -253,9 +282,26 @@ fn said(error: &tokio_postgres::Error) -> String {
     cause.to_string()
 }
 
+/// Returns true when the connection could not be made or broke, and false when both sides could not agree on it.
+fn is_broken(error: &tokio_postgres::Error) -> bool {
+    let mut cause: Option<&dyn std::error::Error> = Some(error);
+    while let Some(it) = cause {
+        if it.is::<std::io::Error>() {
+            return true;
+        }
+        cause = it.source();
+    }
+    error.is_closed()
+}
+
 fn remedy(error: &tokio_postgres::Error) -> &'static str {
     let Some(code) = error.code() else {
-        return "Check address, network and server; the rows stay in the queue";
+        return match is_broken(error) {
+            true => "Check address, network and server; the rows stay in the queue",
+            false => {
+                "Check the password (PGPASSWORD, or the file of PGPASSFILE) and `tls` and `ca` of fleet.toml"
+            }
+        };
     };
     let of_class = |class: &str| code.code().starts_with(class);
     if of_class("28") {

@@ -7,19 +7,27 @@
 //! - Batches of a file are numbered without gaps and a number exists once. Two programs, a copied file and a file from a
 //!   backup therefore never mix their rows: the second one is refused, with the way out ([`Refusal`]).
 //! - [`Pusher`] does this in a thread of its own; the rig never waits for it.
+//! - [`Reader`] answers the questions of a history over all rigs, or some.
 //! - The schema has remarks, monthly partitions, a role that inserts and one that reads ([`set_up`]).
 //!
 //! The password comes from the environment or a password file and is never logged.
 
 mod copy;
+pub mod differential;
 mod error;
+pub mod generate;
 mod handshake;
 mod link;
 mod password;
 mod push;
 mod pusher;
+mod reader;
 mod setup;
 mod status;
+mod tables;
+#[cfg(feature = "fixture")]
+pub mod trial;
+mod value;
 
 pub use error::{FleetError, Refusal, Result};
 pub use handshake::{Facts, Known, Step, next_step};
@@ -27,5 +35,6 @@ pub use link::Link;
 pub use password::{PasswordFile, password_in};
 pub use push::{Pushed, push, start_again, take_over};
 pub use pusher::{Pusher, TargetState, Told};
+pub use reader::{Reader, Rigs};
 pub use setup::{MONTHS_AHEAD, SCHEMA, Setup, set_up};
 pub use status::{Report, report};

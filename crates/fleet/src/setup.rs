@@ -6,7 +6,7 @@ use config::FleetTarget;
 
 /// Step `n` brings schema `n` to `n + 1`. Existing steps never change, and a step only adds, so that older rigs keep
 /// working.
-const STEPS: [&str; 1] = [include_str!("schema/v1.sql")];
+const STEPS: [&str; 2] = [include_str!("schema/v1.sql"), include_str!("schema/v2.sql")];
 
 /// Views and rights, which every set-up makes anew.
 const VIEWS: &str = include_str!("schema/views.sql");

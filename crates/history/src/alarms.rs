@@ -1,6 +1,7 @@
 //! Occurrences of alarms, as the history shows them.
 
 use super::error::{Doing, Result};
+use super::source::Read;
 use super::{Archive, Filter, Moment};
 use machine::station::catalogue::AlarmCode;
 use machine::station::trouble;
@@ -107,9 +108,9 @@ impl Archive {
     /// Returns the alarms that lot, run, recipe and time span of the filter select, in order of time; limit and offset
     /// of the filter apply.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
-        let alarms = filter.alarms().rows(&self.connection, |row| {
+        let alarms = filter.alarms().rows(&self.source, |row| {
             let moment = |column: usize| {
-                let at: rusqlite::Result<Option<i64>> = row.get(column);
+                let at: Read<Option<i64>> = row.get(column);
                 at.map(|it| it.map(Moment))
             };
             let (cleared, acknowledged) = (moment(6)?, moment(7)?);
@@ -131,8 +132,8 @@ impl Archive {
                 shelf: match moment(9)? {
                     Some(until) => Some(Shelf {
                         until,
-                        by: row.get::<_, Option<String>>(10)?.unwrap_or_default(),
-                        reason: row.get::<_, Option<String>>(11)?.unwrap_or_default(),
+                        by: row.get::<Option<String>>(10)?.unwrap_or_default(),
+                        reason: row.get::<Option<String>>(11)?.unwrap_or_default(),
                     }),
                     None => None,
                 },

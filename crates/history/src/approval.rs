@@ -37,7 +37,7 @@ pub fn signatures(db: &Path, recipe: &str, hash: &str) -> Result<Vec<Signature>>
         Ok(Signature { who, at })
     };
     let archive = Archive::open(db)?;
-    (archive.connection.prepare(select))
+    (archive.source.file()?.prepare(select))
         .and_then(|mut statement| statement.query_map([recipe, hash], read)?.collect())
         .doing("reading approvals of a recipe")
 }

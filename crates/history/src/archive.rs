@@ -1,37 +1,31 @@
 //! The reader of the history: parts that a filter selects, and single parts down to their raw replies.
 
+use super::details::Found;
 use super::error::{Doing, Result};
 use super::reasons::texts;
-use super::{CalibrationRecord, Filter, Measurement, Moment, Part, Sample, filter, open, store};
-use rusqlite::{Connection, Row, params, params_from_iter};
+use super::source::{Read, Row, Server, Source};
+use super::{CalibrationRecord, Filter, Moment, Part, filter, open, store};
+use rusqlite::types::Value;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// A history that is open for reading. Reading never blocks a writer.
+/// A history that is open for reading: the file of a rig, or a server with many rigs. Reading never blocks a writer.
 #[derive(Debug)]
 pub struct Archive {
-    pub(super) connection: Connection,
+    pub(super) source: Source,
+    /// Path of the file, or name of the server, for messages.
     pub(super) path: PathBuf,
 }
 
-/// Selects the values of all attempts of one part.
-pub(super) const VALUES: &str = "SELECT parameter.key, m.value, m.uncertainty FROM measurement AS m
-    JOIN parameter ON parameter.id = m.parameter_id
-    WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
-/// Selects the measurements of one part: all attempts, with limits, verdict and budget.
-pub(super) const MEASUREMENTS: &str = "SELECT parameter.key, m.attempt, m.value, m.uncertainty,
-      m.low, m.high, m.verdict, m.budget, m.parameter_id
-    FROM measurement AS m JOIN parameter ON parameter.id = m.parameter_id
-    WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
-/// Selects the samples of one attempt, which are replies of modules.
-pub(super) const SAMPLES: &str = "SELECT line, module, channel, command, raw, at_us FROM sample
-    WHERE part_id = ?1 AND parameter_id = ?2 AND attempt = ?3 ORDER BY n";
+/// Parts whose details are read at once.
+const CHUNK: usize = 200;
 
 impl Archive {
     /// Opens an existing history and migrates an older schema. Fails on a file of another program, and on a newer
     /// schema.
     pub fn open(path: &Path) -> Result<Self> {
         Ok(Self {
-            connection: open::reader(path)?,
+            source: Source::File(open::reader(path)?),
             path: path.to_owned(),
         })
     }
@@ -39,9 +33,17 @@ impl Archive {
     /// Opens an existing history to check or copy it, whatever its schema; writes nothing to the file.
     pub fn open_unchanged(path: &Path) -> Result<Self> {
         Ok(Self {
-            connection: open::unchanged(path)?.0,
+            source: Source::File(open::unchanged(path)?.0),
             path: path.to_owned(),
         })
+    }
+
+    /// Reads the histories of many rigs from a server.
+    pub fn of_server(server: Box<dyn Server>) -> Self {
+        Self {
+            path: server.name().into(),
+            source: Source::Server(server),
+        }
     }
 
     /// Calls `each` for every selected part, in order of judgement; the memory needed does not grow with their number.
@@ -51,19 +53,32 @@ impl Archive {
         filter: &Filter,
         mut each: impl FnMut(Part) -> std::result::Result<(), E>,
     ) -> Result<std::result::Result<(), E>> {
-        const DOING: &str = "reading parts";
-        let select = filter.parts();
-        let mut statement = self.connection.prepare(&select.sql).doing(DOING)?;
-        let mut rows = statement
-            .query(params_from_iter(&select.values))
-            .doing(DOING)?;
-        while let Some(row) = rows.next().doing(DOING)? {
-            let part = self.part(row).doing(DOING)?;
-            if let Err(stop) = each(part) {
-                return Ok(Err(stop));
+        let mut found = Vec::with_capacity(CHUNK);
+        let mut stopped = None;
+        let mut complete = |found: &mut Vec<Found>| -> Read<ControlFlow<()>> {
+            for part in self.completed(std::mem::take(found))? {
+                if let Err(stop) = each(part) {
+                    stopped = Some(stop);
+                    return Ok(ControlFlow::Break(()));
+                }
             }
-        }
-        Ok(Ok(()))
+            Ok(ControlFlow::Continue(()))
+        };
+        let select = filter.parts(self.source.dialect());
+        let mut ended = ControlFlow::Continue(());
+        let read = self.source.each(&select.sql, &select.values, |row| {
+            found.push(found_in(row)?);
+            if found.len() == CHUNK {
+                ended = complete(&mut found)?;
+            }
+            Ok(ended)
+        });
+        read.and_then(|()| match ended {
+            ControlFlow::Continue(()) => complete(&mut found).map(drop),
+            ControlFlow::Break(()) => Ok(()),
+        })
+        .doing("reading parts")?;
+        Ok(stopped.map_or(Ok(()), Err))
     }
 
     /// Returns all selected parts at once; use it only when they fit into memory.
@@ -81,18 +96,16 @@ impl Archive {
 
     /// Counts the selected parts.
     pub fn count_parts(&self, filter: &Filter) -> Result<u64> {
-        filter
-            .count()
-            .first(&self.connection, |row| row.get(0))
-            .map(i64::unsigned_abs)
-            .doing("counting parts")
+        let count = filter.count(self.source.dialect());
+        let count = count.first(&self.source, |row| row.get::<i64>(0));
+        Ok(count.doing("counting parts")?.unwrap_or(0).unsigned_abs())
     }
 
     /// Returns the cycle times of the selected parts, seconds, in no particular order.
     pub fn cycles(&self, filter: &Filter) -> Result<Vec<f64>> {
         filter
             .cycles()
-            .rows(&self.connection, |row| row.get(0))
+            .rows(&self.source, |row| row.get(0))
             .doing("reading cycle times")
     }
 
@@ -103,7 +116,7 @@ impl Archive {
             kind: Some(kind.to_owned()),
             ..Filter::default()
         };
-        let mut select = filter.parts();
+        let mut select = filter.parts(self.source.dialect());
         let seq = i64::try_from(seq).unwrap_or(i64::MAX);
         select.sql = select
             .sql
@@ -118,17 +131,15 @@ impl Archive {
             serial: Some(serial.to_owned()),
             ..Filter::default()
         };
-        self.whole(&filter.parts())
+        self.whole(&filter.parts(self.source.dialect()))
     }
 
     fn whole(&self, select: &filter::Select) -> Result<Vec<Part>> {
-        let parts = select.rows(&self.connection, |row| {
-            let mut part = self.part(row)?;
-            part.measurements = self.measurements(part.row)?;
-            Ok(part)
-        });
-        let mut parts = parts.doing("reading a part")?;
+        const DOING: &str = "reading a part";
+        let found = select.rows(&self.source, found_in).doing(DOING)?;
+        let mut parts = self.completed(found).doing(DOING)?;
         for part in &mut parts {
+            part.measurements = self.measurements(part).doing(DOING)?;
             part.curves = self.curves(part)?;
         }
         Ok(parts)
@@ -137,18 +148,19 @@ impl Archive {
     /// Returns the latest test of the reference part with this serial number.
     pub fn reference_part(&self, serial: &str) -> Result<Option<Part>> {
         const DOING: &str = "reading a reference part";
-        let mut statement = self
-            .connection
-            .prepare(&filter::reference_part())
-            .doing(DOING)?;
-        let mut rows = statement.query([serial]).doing(DOING)?;
-        let row = rows.next().doing(DOING)?;
-        row.map(|row| self.part(row)).transpose().doing(DOING)
+        let serial = Value::Text(serial.to_owned());
+        let found = self
+            .source
+            .first(&filter::reference_part(), &[serial], found_in);
+        let found = found.doing(DOING)?.into_iter().collect();
+        Ok(self.completed(found).doing(DOING)?.pop())
     }
 
-    /// Returns the calibration that was stored last for each coil voltage, of the real or the simulated rig.
+    /// Returns the calibration that was stored last for each coil voltage, of the real or the simulated rig. Only the file of
+    /// a rig has an answer.
     pub fn calibrations(&self, simulated: bool) -> Result<Vec<CalibrationRecord>> {
-        self.connection
+        self.source
+            .file()?
             .prepare(
                 "SELECT made_at_us, due_at_us, hash, body, verified, max(id) FROM calibration
                  WHERE body ->> 'simulated' = ?1 GROUP BY body ->> 'nominal_v'",
@@ -159,98 +171,43 @@ impl Archive {
 
     /// Returns the keys of all parameters, in the order in which exports list their columns.
     pub fn parameters(&self) -> Result<Vec<String>> {
-        self.connection
-            .prepare_cached("SELECT key FROM parameter ORDER BY id")
-            .and_then(|mut it| it.query_map([], |row| row.get(0))?.collect())
+        self.source
+            .rows("SELECT key FROM parameter ORDER BY id", &[], |row| {
+                row.get(0)
+            })
             .doing("reading the parameters")
-    }
-
-    fn part(&self, row: &Row<'_>) -> rusqlite::Result<Part> {
-        let id: i64 = row.get(0)?;
-        let (lot, run, recipe) = self.run(row.get(1)?)?;
-        let reasons: serde_json::Value = row.get(7)?;
-        let reasons: Vec<String> = texts(&reasons).map(str::to_owned).collect();
-        let (values, uncertainty) = self.values_of(id)?;
-        Ok(Part {
-            tag: "part",
-            lot,
-            run,
-            kind: row.get(2)?,
-            seq: row.get::<_, i64>(3)?.unsigned_abs(),
-            recipe,
-            serial: row.get(4)?,
-            verdict: row.get(5)?,
-            bin: row.get(6)?,
-            landed_bin: row.get(11)?,
-            landed_at: row.get::<_, Option<i64>>(12)?.map(Moment),
-            reason_codes: self.reasons(id, &reasons)?,
-            reasons,
-            time: Moment(row.get(8)?),
-            test_s: row.get(9)?,
-            cycle_s: row.get(10)?,
-            values,
-            uncertainty,
-            measurements: Vec::new(),
-            curves: Vec::new(),
-            row: id,
-        })
-    }
-
-    fn run(&self, id: i64) -> rusqlite::Result<(String, u32, String)> {
-        self.connection
-            .prepare_cached(
-                "SELECT lot.name, run.number, recipe.name FROM run JOIN lot ON lot.id = run.lot_id
-                 JOIN recipe ON recipe.id = run.recipe_id WHERE run.id = ?1",
-            )?
-            .query_row([id], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
-    }
-
-    /// Returns value and uncertainty of the last attempt at each parameter, by key.
-    fn values_of(&self, part: i64) -> rusqlite::Result<(Map, Map)> {
-        let mut statement = self.connection.prepare_cached(VALUES)?;
-        let mut rows = statement.query([part])?;
-        let (mut values, mut uncertainty) = (Map::new(), Map::new());
-        while let Some(row) = rows.next()? {
-            let key: String = row.get(0)?;
-            values.insert(key.clone(), row.get::<_, Option<f64>>(1)?.into());
-            uncertainty.insert(key, row.get::<_, Option<f64>>(2)?.into());
-        }
-        Ok((values, uncertainty))
-    }
-
-    fn measurements(&self, part: i64) -> rusqlite::Result<Vec<Measurement>> {
-        let mut statement = self.connection.prepare_cached(MEASUREMENTS)?;
-        let rows = statement.query_map([part], |row| {
-            let attempt = row.get(1)?;
-            Ok(Measurement {
-                parameter: row.get(0)?,
-                attempt,
-                value: row.get(2)?,
-                uncertainty: row.get(3)?,
-                low: row.get(4)?,
-                high: row.get(5)?,
-                verdict: row.get(6)?,
-                budget: row.get(7)?,
-                samples: self.samples(part, row.get(8)?, attempt)?,
-            })
-        })?;
-        rows.collect()
-    }
-
-    fn samples(&self, part: i64, parameter: i64, attempt: u32) -> rusqlite::Result<Vec<Sample>> {
-        let mut statement = self.connection.prepare_cached(SAMPLES)?;
-        let rows = statement.query_map(params![part, parameter, attempt], |row| {
-            Ok(Sample {
-                line: row.get(0)?,
-                module: row.get(1)?,
-                channel: row.get(2)?,
-                command: row.get(3)?,
-                raw: row.get(4)?,
-                at: Moment(row.get(5)?),
-            })
-        })?;
-        rows.collect()
     }
 }
 
-type Map = serde_json::Map<String, serde_json::Value>;
+/// Reads a part from the columns of [`Filter::parts`], without its details.
+fn found_in(row: &Row<'_>) -> Read<Found> {
+    let reasons: serde_json::Value = row.get(7)?;
+    let part = Part {
+        tag: "part",
+        lot: String::new(),
+        run: 0,
+        rig: None,
+        kind: row.get(2)?,
+        seq: row.get::<i64>(3)?.unsigned_abs(),
+        recipe: String::new(),
+        serial: row.get(4)?,
+        verdict: row.get(5)?,
+        bin: row.get(6)?,
+        landed_bin: row.get(11)?,
+        landed_at: row.get::<Option<i64>>(12)?.map(Moment),
+        reason_codes: Vec::new(),
+        reasons: texts(&reasons).map(str::to_owned).collect(),
+        time: Moment(row.get(8)?),
+        test_s: row.get(9)?,
+        cycle_s: row.get(10)?,
+        values: serde_json::Map::new(),
+        uncertainty: serde_json::Map::new(),
+        measurements: Vec::new(),
+        curves: Vec::new(),
+        row: row.get(0)?,
+    };
+    Ok(Found {
+        part,
+        run: row.get(1)?,
+    })
+}

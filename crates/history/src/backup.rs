@@ -35,12 +35,14 @@ impl Archive {
             fs::remove_file(partial).map_err(place)?;
         }
         // The connection of a reader is query-only; this is lifted for the one statement that writes the copy.
-        self.connection
+        self.source
+            .file()?
             .pragma_update(None, "query_only", false)
             .doing("copying the history")?;
         let name = partial.to_string_lossy().into_owned();
-        let copied = self.connection.execute("VACUUM INTO ?1", [name]);
-        self.connection
+        let copied = self.source.file()?.execute("VACUUM INTO ?1", [name]);
+        self.source
+            .file()?
             .pragma_update(None, "query_only", true)
             .doing("copying the history")?;
         copied.doing("copying the history")?;
@@ -59,7 +61,8 @@ impl Archive {
     pub fn check(&self) -> Result<()> {
         self.check_by("PRAGMA integrity_check(1)")?;
         let mut orphans = self
-            .connection
+            .source
+            .file()?
             .prepare("PRAGMA foreign_key_check")
             .doing(DOING)?;
         let mut rows = orphans.query([]).doing(DOING)?;
@@ -79,7 +82,7 @@ impl Archive {
 
     fn check_by(&self, pragma: &str) -> Result<()> {
         let found: rusqlite::Result<String> =
-            self.connection.query_row(pragma, [], |row| row.get(0));
+            self.source.file()?.query_row(pragma, [], |row| row.get(0));
         match found.doing(DOING)? {
             finding if finding == "ok" => Ok(()),
             finding => Err(self.damaged(finding)),

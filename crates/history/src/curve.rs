@@ -13,8 +13,10 @@
 
 use super::Moment;
 use super::error::{Doing, HistoryError, Result};
+use super::source::{Read, Row};
 use super::{Archive, Part};
 use machine::instrument::curve::Curve;
+use rusqlite::types::Value;
 use rusqlite::{Transaction, params};
 use serde::{Deserialize, Serialize, Serializer};
 use utoipa::ToSchema;
@@ -153,22 +155,18 @@ pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusql
 
 /// Selects the curves of one part.
 pub(super) const CURVES: &str = "SELECT signal, unit, begin_us, step, samples, packed FROM curve
-    WHERE part_id = ?1 ORDER BY signal";
+    WHERE part_id = ? ORDER BY signal";
 
 impl Archive {
     /// Returns the curves of a part in order of signal names; a part that passed has none.
     pub fn curves(&self, part: &Part) -> Result<Vec<Curve>> {
         const DOING: &str = "reading the curves of a part";
-        let mut statement = self.connection.prepare_cached(CURVES).doing(DOING)?;
-        let mut rows = statement.query([part.row]).doing(DOING)?;
-        let mut curves = Vec::new();
-        while let Some(row) = rows.next().doing(DOING)? {
-            curves.push(self.curve(row).doing(DOING)??);
-        }
-        Ok(curves)
+        let of_part = [Value::Integer(part.row)];
+        let curves = self.source.rows(CURVES, &of_part, |row| self.curve(row));
+        curves.doing(DOING)?.into_iter().collect()
     }
 
-    fn curve(&self, row: &rusqlite::Row<'_>) -> rusqlite::Result<Result<Curve>> {
+    fn curve(&self, row: &Row<'_>) -> Read<Result<Curve>> {
         let (step, samples): (f64, i64) = (row.get(3)?, row.get(4)?);
         let bytes: Vec<u8> = row.get(5)?;
         let signal: String = row.get(0)?;

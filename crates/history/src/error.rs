@@ -1,5 +1,6 @@
 //! Reasons why the history cannot be read or written.
 
+use super::source::{Read, ReadError, ServerError};
 use std::path::PathBuf;
 
 /// Reason why an access to the history failed; `source()` returns the underlying error.
@@ -157,6 +158,17 @@ pub enum HistoryError {
         /// Error of the file system.
         source: std::io::Error,
     },
+    /// A server with the histories of many rigs cannot answer.
+    #[error("{0}")]
+    Server(ServerError),
+    /// Only the file of a rig can answer this question.
+    #[error(
+        "{server} has no answer to this question; ask the history file of the rig (without --from)"
+    )]
+    OnlyFile {
+        /// Name of the server.
+        server: String,
+    },
     /// The integrity check found damage.
     #[error("{path} is damaged: {finding}")]
     Damaged {
@@ -198,6 +210,15 @@ pub type Result<T> = std::result::Result<T, HistoryError>;
 pub(super) trait Doing<T> {
     /// Converts a database error into the [`HistoryError`] that tells an operator what to do.
     fn doing(self, doing: &'static str) -> Result<T>;
+}
+
+impl<T> Doing<T> for Read<T> {
+    fn doing(self, doing: &'static str) -> Result<T> {
+        self.map_err(|error| match error {
+            ReadError::File(source) => sorted(doing, source),
+            ReadError::Server(error) => HistoryError::Server(error),
+        })
+    }
 }
 
 impl<T> Doing<T> for rusqlite::Result<T> {

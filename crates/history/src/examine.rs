@@ -2,6 +2,7 @@
 //! create a missing file.
 
 use super::error::{Doing, Result};
+use super::source::Source;
 use super::{Archive, CalibrationRecord, SCHEMA, open};
 use rusqlite::OptionalExtension;
 use std::path::Path;
@@ -24,7 +25,7 @@ pub struct Examination {
 pub fn examine(path: &Path) -> Result<Examination> {
     let (connection, schema) = open::unchanged(path)?;
     let archive = Archive {
-        connection,
+        source: Source::File(connection),
         path: path.to_owned(),
     };
     archive.quick_check()?;
@@ -36,7 +37,10 @@ pub fn examine(path: &Path) -> Result<Examination> {
         });
     }
     let source = "SELECT source = 'simulated' FROM rig";
-    let is_simulated = archive.connection.query_row(source, [], |row| row.get(0));
+    let is_simulated = archive
+        .source
+        .file()?
+        .query_row(source, [], |row| row.get(0));
     Ok(Examination {
         schema,
         is_simulated: is_simulated

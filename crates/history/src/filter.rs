@@ -3,14 +3,15 @@
 //! Without the member `param`, the indexes of the table `part` find the parts. With `param`, the index
 //! `measurement_value` (parameter, population, run, verdict, value) gives their row numbers: SQLite enters this index
 //! once per run and verdict, at the least value, and then visits the matching parts in ascending order, so a page of
-//! results ends the search early. `filter/related.rs` selects runs, alarms and orders.
+//! results ends the search early. On a server, the index of the same name begins with the run, and values join their part,
+//! whose verdict they do not carry. `filter/related.rs` selects runs, alarms and orders.
 
 mod related;
 
 use super::Moment;
 use super::gates::SUSPECT;
+use super::source::{Dialect, Read, Row, Source};
 use rusqlite::types::Value;
-use rusqlite::{Connection, Row, params_from_iter};
 
 /// Selects parts; a member that is absent selects all.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -66,33 +67,23 @@ impl Select {
     }
 
     /// Runs the statement and returns all rows, each converted by `read`.
-    pub fn rows<T>(
-        &self,
-        connection: &Connection,
-        read: impl FnMut(&Row<'_>) -> rusqlite::Result<T>,
-    ) -> rusqlite::Result<Vec<T>> {
-        connection
-            .prepare(&self.sql)?
-            .query_map(params_from_iter(&self.values), read)?
-            .collect()
+    pub fn rows<T>(&self, source: &Source, read: impl FnMut(&Row<'_>) -> Read<T>) -> Read<Vec<T>> {
+        source.rows(&self.sql, &self.values, read)
     }
 
-    /// Runs the statement and returns the first row, converted by `read`.
+    /// Runs the statement and returns the first row, converted by `read`; `None` without a row.
     pub fn first<T>(
         &self,
-        connection: &Connection,
-        read: impl FnOnce(&Row<'_>) -> rusqlite::Result<T>,
-    ) -> rusqlite::Result<T> {
-        connection
-            .prepare(&self.sql)?
-            .query_row(params_from_iter(&self.values), read)
+        source: &Source,
+        read: impl FnMut(&Row<'_>) -> Read<T>,
+    ) -> Read<Option<T>> {
+        source.first(&self.sql, &self.values, read)
     }
 
     /// Returns true when the statement gives a row.
-    pub fn exists(&self, connection: &Connection) -> rusqlite::Result<bool> {
-        connection
-            .prepare(&self.sql)?
-            .exists(params_from_iter(&self.values))
+    pub fn exists(&self, source: &Source) -> Read<bool> {
+        let found = self.first(source, |_| Ok(()));
+        Ok(found?.is_some())
     }
 
     fn add(&mut self, sql: &str, value: impl Into<Value>) {
@@ -126,21 +117,20 @@ impl Filter {
         *self == runs
     }
 
-    /// Selects the columns of the parts, in order of judgement.
-    pub(super) fn parts(&self) -> Select {
-        let mut select = match &self.param {
-            Some(param) => {
-                let of_value = self.values(param, "m.part_id", false);
-                Select {
-                    sql: format!(
-                        "SELECT {COLUMNS} FROM part WHERE part.id IN ({})",
-                        of_value.sql
-                    ),
-                    values: of_value.values,
-                }
+    /// Selects the columns of the parts, in order of judgement; over several rigs, rig by rig.
+    pub(super) fn parts(&self, dialect: Dialect) -> Select {
+        let mut select = match (&self.param, dialect) {
+            (Some(param), Dialect::File) => {
+                let mut select = self.values(param, "m.part_id", false);
+                select.sql = format!(
+                    "SELECT {COLUMNS} FROM part WHERE part.id IN ({})",
+                    select.sql
+                );
+                select
             }
-            None => {
-                let mut select = Select::new(format!("SELECT {COLUMNS} FROM part WHERE 1"));
+            (Some(param), Dialect::Server) => self.joined_values(param, COLUMNS),
+            (None, Dialect::File | Dialect::Server) => {
+                let mut select = Select::new(format!("SELECT {COLUMNS} FROM part WHERE true"));
                 self.run_conditions(&mut select, "part");
                 select
             }
@@ -155,35 +145,37 @@ impl Filter {
     fn page(&self, select: &mut Select) {
         let signed = |it: u64| i64::try_from(it).unwrap_or(i64::MAX);
         if self.limit.is_some() || self.offset.is_some() {
-            select.add(" LIMIT ?", self.limit.map_or(-1, signed));
+            select.add(" LIMIT ?", self.limit.map_or(i64::MAX, signed));
             select.add(" OFFSET ?", self.offset.map_or(0, signed));
         }
     }
 
     /// Selects the row number of each part and its value of a parameter, in no particular order. Reads only the index
     /// `measurement_value`, unless the filter has a bin, a serial number, a time span or `suspect`.
-    pub(super) fn series(&self, param: &str) -> Select {
-        let joined = self.restricts_part();
-        let mut select = self.values(param, "m.part_id, m.value", joined);
-        if joined {
-            self.part_conditions(&mut select, true);
-        }
+    pub(super) fn series(&self, param: &str, dialect: Dialect) -> Select {
+        const SERIES: &str = "m.part_id, m.value";
+        let mut select = match dialect {
+            Dialect::File if !self.restricts_part() => return self.values(param, SERIES, false),
+            Dialect::File => self.values(param, SERIES, true),
+            Dialect::Server => self.joined_values(param, SERIES),
+        };
+        self.part_conditions(&mut select, true);
         select
     }
 
-    /// Counts the selected parts. With `param`, reads only the index `measurement_value` when this index has a column
-    /// for every member of the filter.
-    pub(super) fn count(&self) -> Select {
-        let found = match &self.param {
-            Some(param) if !self.restricts_part() => {
+    /// Counts the selected parts. In a file, with `param`, reads only the index `measurement_value` when this index has a
+    /// column for every member of the filter.
+    pub(super) fn count(&self, dialect: Dialect) -> Select {
+        let found = match (&self.param, dialect) {
+            (Some(param), Dialect::File) if !self.restricts_part() => {
                 let mut found = self.values(param, "1", false);
                 self.page(&mut found);
                 found
             }
-            _ => self.parts(),
+            _ => self.parts(dialect),
         };
         Select {
-            sql: format!("SELECT count(*) FROM ({})", found.sql),
+            sql: format!("SELECT count(*) FROM ({}) AS found", found.sql),
             values: found.values,
         }
     }
@@ -211,33 +203,42 @@ impl Filter {
         select
     }
 
-    /// Counts the parts judged in first tests, those of them that passed, and the parts that passed in a retest.
-    pub(super) fn lot_yield(&self) -> Select {
-        let mut tests = Select::new(
-            "SELECT part.verdict AS verdict, part.run_id IN (SELECT run_id FROM retest) AS again \
-             FROM part WHERE part.verdict <> 'unjudged'",
-        );
-        self.run_conditions(&mut tests, "part");
-        self.part_conditions(&mut tests, false);
-        Select {
-            sql: format!(
-                "SELECT ifnull(sum(NOT again), 0), ifnull(sum(NOT again AND verdict = 'pass'), 0),
-                   ifnull(sum(again AND verdict = 'pass'), 0) FROM ({})",
-                tests.sql
-            ),
-            values: tests.values,
-        }
-    }
-
+    /// Selects from the index `measurement_value` of a file, and with `joined` from the parts.
     fn values(&self, param: &str, columns: &str, joined: bool) -> Select {
         let join = if joined {
             " CROSS JOIN part ON part.id = m.part_id"
         } else {
             ""
         };
-        let mut select = Select::new(format!(
-            "SELECT {columns} FROM measurement AS m{join} WHERE "
-        ));
+        let mut select = self.values_from(&format!("{columns} FROM measurement AS m{join}"), param);
+        self.add_runs(&mut select, "m");
+        match &self.verdict {
+            Some(verdict) => select.add(" AND m.part_verdict = ?", verdict.clone()),
+            None => {
+                select
+                    .sql
+                    .push_str(" AND m.part_verdict IN ('pass', 'fail', 'void', 'unjudged')");
+            }
+        }
+        self.range(&mut select);
+        select
+    }
+
+    /// Selects from values and parts of a server, partition by partition.
+    fn joined_values(&self, param: &str, columns: &str) -> Select {
+        const JOINED: &str = "FROM measurement AS m JOIN part ON part.id = m.part_id AND part.judged_at_us = m.judged_at_us";
+        let mut select = self.values_from(&format!("{columns} {JOINED}"), param);
+        self.add_runs(&mut select, "m");
+        if let Some(verdict) = &self.verdict {
+            select.add(" AND part.verdict = ?", verdict.clone());
+        }
+        self.range(&mut select);
+        self.span(&mut select, "m.judged_at_us");
+        select
+    }
+
+    fn values_from(&self, columns: &str, param: &str) -> Select {
+        let mut select = Select::new(format!("SELECT {columns} WHERE "));
         select.add(
             "m.parameter_id = (SELECT id FROM parameter WHERE key = ?)",
             param.to_owned(),
@@ -248,18 +249,12 @@ impl Filter {
             Some(_) | None => " AND m.population = 'lot'",
         };
         select.sql.push_str(population);
-        self.add_runs(&mut select, "m");
-        match &self.verdict {
-            Some(verdict) => select.add(" AND m.part_verdict = ?", verdict.clone()),
-            None => {
-                select
-                    .sql
-                    .push_str(" AND m.part_verdict IN ('pass', 'fail', 'void', 'unjudged')");
-            }
-        }
+        select
+    }
+
+    fn range(&self, select: &mut Select) {
         select.add(" AND m.value >= ?", self.min.unwrap_or(f64::MIN));
         select.add(" AND m.value <= ?", self.max.unwrap_or(f64::MAX));
-        select
     }
 
     fn run_conditions(&self, select: &mut Select, table: &str) {

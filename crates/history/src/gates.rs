@@ -17,10 +17,12 @@
 //! simulated rig only those of the same run.
 
 use super::error::{Doing, Result};
+use super::source::{Read, Row};
 use super::store::{RowIds, source};
 use super::{Archive, Filter, Moment, Store, alarms, scans};
 use machine::station::trouble::Alarm;
-use rusqlite::{Connection, OptionalExtension, Transaction, params};
+use rusqlite::types::Value;
+use rusqlite::{Connection, Transaction, params};
 use serde::{Deserialize, Serialize};
 use texts::Lang;
 use utoipa::ToSchema;
@@ -169,13 +171,14 @@ pub struct ReferenceCheck {
 
 /// SQL condition on `part` that is true for a suspect part: a check after it failed, and no check in between passed.
 ///
-/// Within a run, times decide the order; between runs, row numbers do, because the clock may be set back between them.
+/// Within a run, times decide the order; between runs, row numbers do, because the clock may be set back between them. On a
+/// server the upper bits of row numbers name the history; parts of other rigs are never suspect.
 pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS failed \
     JOIN run AS checked ON checked.id = failed.run_id JOIN run AS own ON own.id = part.run_id \
     WHERE NOT failed.passed AND (part.run_id, part.judged_at_us) <= (failed.run_id, failed.at_us) \
-    AND (own.id = checked.id OR (own.source = 'rig' AND checked.source = 'rig')) \
+    AND (own.id = checked.id OR (own.source = 'rig' AND checked.source = 'rig')) AND own.id >> 40 = checked.id >> 40 \
     AND NOT EXISTS (SELECT 1 FROM golden_check AS good JOIN run ON run.id = good.run_id \
-      WHERE good.passed AND good.id < failed.id \
+      WHERE good.passed AND good.id < failed.id AND good.id >> 40 = failed.id >> 40 \
       AND (run.id = checked.id OR (run.source = 'rig' AND checked.source = 'rig')) \
       AND (part.run_id, part.judged_at_us) <= (good.run_id, good.at_us)))";
 
@@ -251,17 +254,17 @@ impl Store {
 impl Archive {
     /// Returns the state of a lot; `None` for a lot without runs.
     pub fn standing(&self, lot: &str) -> Result<Option<LotStatus>> {
-        self.connection
-            .query_row(
-                "SELECT ifnull(lot_state.state, 'open'), lot_state.why, lot_state.alarm,
-                   ifnull(lot_state.since_us, lot.first_opened_us), recipe.name, recipe.hash
+        self.source
+            .first(
+                "SELECT coalesce(lot_state.state, 'open'), lot_state.why, lot_state.alarm,
+                   coalesce(lot_state.since_us, lot.first_opened_us), recipe.name, recipe.hash
                  FROM lot JOIN run ON run.lot_id = lot.id JOIN recipe ON recipe.id = run.recipe_id
                    LEFT JOIN lot_state ON lot_state.lot_id = lot.id
-                 WHERE lot.name = ?1 ORDER BY run.source = 'import', run.number DESC LIMIT 1",
-                [lot],
+                 WHERE lot.name = ? ORDER BY run.source = 'import', run.number DESC LIMIT 1",
+                &[Value::Text(lot.to_owned())],
                 |row| {
                     Ok(LotStatus {
-                        state: LotState::named(&row.get::<_, String>(0)?),
+                        state: LotState::named(&row.get::<String>(0)?),
                         why: row.get(1)?,
                         why_zh: alarms::chinese(row.get(2)?),
                         since: Moment(row.get(3)?),
@@ -270,7 +273,6 @@ impl Archive {
                     })
                 },
             )
-            .optional()
             .doing("reading the state of a lot")
     }
 
@@ -281,18 +283,17 @@ impl Archive {
             suspect: true,
             ..filter.clone()
         })?;
-        filter
-            .lot_yield()
-            .first(&self.connection, |row| {
-                let count = |at: usize| row.get::<_, i64>(at).map(i64::unsigned_abs);
-                Ok(LotYield {
-                    parts: count(0)?,
-                    first_pass: count(1)?,
-                    retest_pass: count(2)?,
-                    suspect,
-                })
+        let counted = filter.lot_yield().first(&self.source, |row| {
+            let count = |at: usize| row.get::<i64>(at).map(i64::unsigned_abs);
+            Ok(LotYield {
+                parts: count(0)?,
+                first_pass: count(1)?,
+                retest_pass: count(2)?,
+                suspect,
             })
-            .doing("counting a lot over its runs")
+        });
+        let counted = counted.doing("counting a lot over its runs")?;
+        Ok(counted.unwrap_or_default())
     }
 
     /// Returns the reference checks of the selected runs, the oldest first.
@@ -305,32 +306,31 @@ impl Archive {
             select.sql
         );
         select
-            .rows(&self.connection, reference_check_of)
+            .rows(&self.source, reference_check_of)
             .doing("reading reference checks")
     }
 
     /// Returns the latest reference check of the real or the simulated rig.
     pub fn last_reference_check(&self, simulated: bool) -> Result<Option<ReferenceCheck>> {
-        self.connection
-            .query_row(
+        self.source
+            .first(
                 "SELECT run.number, golden_check.at_us, passed, text, alarm, suspect_since_us
                  FROM golden_check JOIN run ON run.id = golden_check.run_id
-                 WHERE run.source = ?1 ORDER BY golden_check.id DESC LIMIT 1",
-                [source(simulated)],
+                 WHERE run.source = ? ORDER BY golden_check.id DESC LIMIT 1",
+                &[Value::Text(source(simulated).to_owned())],
                 reference_check_of,
             )
-            .optional()
             .doing("reading the last reference check")
     }
 }
 
-fn reference_check_of(row: &rusqlite::Row<'_>) -> rusqlite::Result<ReferenceCheck> {
+fn reference_check_of(row: &Row<'_>) -> Read<ReferenceCheck> {
     Ok(ReferenceCheck {
         run: row.get(0)?,
         at: Moment(row.get(1)?),
         passed: row.get(2)?,
         text: row.get(3)?,
         text_zh: alarms::chinese(row.get(4)?),
-        suspect_since: row.get::<_, Option<i64>>(5)?.map(Moment),
+        suspect_since: row.get::<Option<i64>>(5)?.map(Moment),
     })
 }

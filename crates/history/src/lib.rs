@@ -2,7 +2,8 @@
 //!
 //! - [`Store`] is the only writer. It takes records ([`Row`]) in batches, one transaction each: a batch that was
 //!   acknowledged survives power loss, and one that failed leaves no row.
-//! - [`Archive`] is the reader. Command line, page and exports select with the same [`Filter`].
+//! - [`Archive`] is the reader. Command line, page and exports select with the same [`Filter`]. It reads the file of a rig, or
+//!   a [`Server`] with many rigs.
 //! - A part has one row: recording the part again adds none; its landing or interruption completes the row. Opening a
 //!   lot again adds a run.
 //! - Each value is stored with its attempt, limits, uncertainty and budget, and with the raw replies by line, module
@@ -44,6 +45,7 @@ pub mod columns;
 pub mod csv;
 mod curve;
 mod decision;
+mod details;
 mod error;
 mod examine;
 mod filter;
@@ -70,6 +72,7 @@ mod run_end;
 mod scans;
 mod serials;
 mod series;
+mod source;
 mod store;
 pub mod tooling;
 mod values;
@@ -107,6 +110,7 @@ pub use rejudge::rejudged;
 pub use reopening::{Reopening, ReopeningRecord};
 pub use retention::Pruned;
 pub use run_end::RunEndRecord;
+pub use source::{Receiver, Server, ServerError, Value};
 pub use store::Store;
 pub use values::{LimitsSeen, Values};
 pub use wear::{Wear, WearRecord};

@@ -49,7 +49,8 @@ impl Archive {
     /// Returns at most `limit` lots, the latest first; skips the first `offset` ones.
     pub fn lot_book(&self, limit: u32, offset: u32) -> Result<Vec<LotEntry>> {
         let names: Vec<(String, u32, i64, [Option<String>; 3])> = self
-            .connection
+            .source
+            .file()?
             .prepare(BOOK)
             .and_then(|mut it| {
                 let read = |row: &rusqlite::Row<'_>| {

@@ -1,8 +1,9 @@
 //! Summaries of runs, and counts of verdicts in a span of time.
 
 use super::error::{Doing, Result};
+use super::source::Read;
 use super::{Archive, Filter, Moment};
-use rusqlite::{OptionalExtension, params};
+use rusqlite::types::Value;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -13,6 +14,9 @@ pub struct LotSummary {
     pub lot: String,
     /// Number of the run within its lot.
     pub run: u32,
+    /// Plant and name of the rig, where the answer may be of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rig: Option<String>,
     /// Name of the recipe.
     pub recipe: String,
     /// Hash of the recipe.
@@ -97,16 +101,18 @@ impl Archive {
             "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
                run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id,
                (SELECT consented_by FROM retest WHERE run_id = run.id),
-               run_end.ended, run_end.cause, run_end.cause_text
+               run_end.ended, run_end.cause, run_end.cause_text, {}
              FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
                LEFT JOIN run_end ON run_end.run_id = run.id
              WHERE run.id IN ({}) ORDER BY run.id",
+            self.source.dialect().rig(),
             select.sql
         );
-        let lots = select.rows(&self.connection, |row| {
+        let lots = select.rows(&self.source, |row| {
             let mut summary = LotSummary {
                 lot: row.get(0)?,
                 run: row.get(1)?,
+                rig: row.get(14)?,
                 recipe: row.get(2)?,
                 recipe_hash: row.get(3)?,
                 calibration_hash: row.get(4)?,
@@ -114,7 +120,7 @@ impl Archive {
                 seed: row.get(6)?,
                 retest: row.get(10)?,
                 opened: Moment(row.get(7)?),
-                closed: row.get::<_, Option<i64>>(8)?.map(Moment),
+                closed: row.get::<Option<i64>>(8)?.map(Moment),
                 ended: row.get(11)?,
                 cause: row.get(12)?,
                 cause_text: row.get(13)?,
@@ -131,56 +137,51 @@ impl Archive {
 
     /// Returns the text of the recipe with this hash.
     pub fn recipe(&self, hash: &str) -> Result<Option<String>> {
-        self.connection
-            .prepare_cached("SELECT body FROM recipe WHERE hash = ?1")
-            .and_then(|mut it| it.query_row([hash], |row| row.get(0)).optional())
+        let hash = Value::Text(hash.to_owned());
+        self.source
+            .first("SELECT body FROM recipe WHERE hash = ?", &[hash], |row| {
+                row.get(0)
+            })
             .doing("reading a recipe")
     }
 
     /// Returns true when lot, recipe and run of the filter select at least one run.
     pub fn has_runs(&self, filter: &Filter) -> Result<bool> {
         let runs = filter.runs();
-        runs.exists(&self.connection).doing("looking for a run")
+        runs.exists(&self.source).doing("looking for a run")
     }
 
     /// Counts the verdicts on production parts that were judged in a time span: `since` included, `until` excluded.
     pub fn yield_between(&self, since: Moment, until: Moment) -> Result<Yield> {
         let mut counts = Yield::default();
-        self.connection
-            .prepare_cached(YIELD)
-            .and_then(|mut statement| {
-                let mut rows = statement.query(params![since.0, until.0])?;
-                while let Some(row) = rows.next()? {
-                    counts.count(
-                        &row.get::<_, String>(0)?,
-                        row.get::<_, i64>(1)?.unsigned_abs(),
-                    );
-                }
-                Ok(counts)
+        let span = [Value::Integer(since.0), Value::Integer(until.0)];
+        self.source
+            .rows(YIELD, &span, |row| {
+                let verdict: String = row.get(0)?;
+                counts.count(&verdict, row.get::<i64>(1)?.unsigned_abs());
+                Ok(())
             })
-            .doing("counting verdicts")
+            .doing("counting verdicts")?;
+        Ok(counts)
     }
 
-    fn count(&self, run: i64, summary: &mut LotSummary) -> rusqlite::Result<()> {
-        let mut statement = self.connection.prepare_cached(COUNTS)?;
-        let mut rows = statement.query([run])?;
-        while let Some(row) = rows.next()? {
-            let parts = row.get::<_, i64>(3)?.unsigned_abs();
-            if row.get::<_, String>(0)? == "golden" {
+    fn count(&self, run: i64, summary: &mut LotSummary) -> Read<()> {
+        let run = [Value::Integer(run)];
+        self.source.rows(COUNTS, &run, |row| {
+            let parts = row.get::<i64>(3)?.unsigned_abs();
+            if row.get::<String>(0)? == "golden" {
                 summary.golden += parts;
-                continue;
+                return Ok(());
             }
-            summary.counts.count(&row.get::<_, String>(1)?, parts);
-            if let Some(bin) = row.get::<_, Option<String>>(2)? {
+            summary.counts.count(&row.get::<String>(1)?, parts);
+            if let Some(bin) = row.get::<Option<String>>(2)? {
                 *summary.bins.entry(bin).or_default() += parts;
             }
-        }
-        let alarms = "SELECT count(*) FROM alarm WHERE run_id = ?1";
-        let alarms: i64 = self
-            .connection
-            .prepare_cached(alarms)?
-            .query_row([run], |row| row.get(0))?;
-        summary.alarms = alarms.unsigned_abs();
+            Ok(())
+        })?;
+        let alarms = "SELECT count(*) FROM alarm WHERE run_id = ?";
+        let alarms = self.source.first(alarms, &run, |row| row.get::<i64>(0))?;
+        summary.alarms = alarms.unwrap_or(0).unsigned_abs();
         Ok(())
     }
 }

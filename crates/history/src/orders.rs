@@ -147,7 +147,7 @@ impl Archive {
         let select = "SELECT at_us, who, role, what, what ->> '$.revision' FROM ordered
             WHERE refused IS NULL AND what ->> '$.order' IN ('revise', 'new_recipe') AND what ->> '$.recipe' = ?1
             ORDER BY id DESC";
-        (self.connection.prepare(select))
+        (self.source.file()?.prepare(select))
             .and_then(|mut statement| statement.query_map([recipe], read)?.collect())
             .doing("reading revisions")
     }
@@ -157,7 +157,7 @@ impl Archive {
     pub fn orders(&self, filter: &Filter, choice: &OrderChoice) -> Result<Vec<OrderEntry>> {
         filter
             .orders(choice)
-            .rows(&self.connection, |row| {
+            .rows(&self.source, |row| {
                 Ok(OrderEntry {
                     at: Moment(row.get(0)?),
                     lot: row.get(1)?,
@@ -167,9 +167,7 @@ impl Archive {
                     origin: row.get(5)?,
                     what: row.get(6)?,
                     refused: row.get(7)?,
-                    refused_zh: row
-                        .get::<_, Option<serde_json::Value>>(8)?
-                        .and_then(chinese),
+                    refused_zh: row.get::<Option<serde_json::Value>>(8)?.and_then(chinese),
                 })
             })
             .doing("reading orders")

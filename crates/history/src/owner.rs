@@ -45,7 +45,7 @@ const fn name(simulated: bool) -> &'static str {
 /// Fails when the file belongs to a rig of the other kind, or is no history.
 pub fn check_rig(path: &Path, simulated: bool) -> Result<()> {
     match path.exists() {
-        true => check(&Archive::open(path)?.connection, path, simulated),
+        true => check(Archive::open(path)?.source.file()?, path, simulated),
         false => Ok(()),
     }
 }
@@ -64,7 +64,7 @@ impl Archive {
     pub fn is_simulated(&self, filter: &Filter) -> Result<bool> {
         let mut runs = filter.runs();
         runs.sql.push_str(" AND run.source = 'simulated'");
-        runs.exists(&self.connection)
+        runs.exists(&self.source)
             .doing("looking for simulated runs")
     }
 }

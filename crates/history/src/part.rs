@@ -16,6 +16,9 @@ pub struct Part {
     pub lot: String,
     /// Number of the run within its lot.
     pub run: u32,
+    /// Plant and name of the rig, where the answer may be of several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rig: Option<String>,
     /// `lot` for a production part, `golden` for a reference part.
     pub kind: String,
     /// Number of the part: it was the `seq`-th of its kind to enter the nest in this run.
@@ -112,6 +115,7 @@ impl Part {
             tag: "part",
             lot: lot.to_owned(),
             run: 1,
+            rig: None,
             kind: "lot".to_owned(),
             seq,
             recipe: "jzc-22f-012".to_owned(),

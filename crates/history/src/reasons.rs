@@ -1,14 +1,14 @@
 //! Codes of the reasons why a part did not pass: the table `reason` has one row per text in `part.reasons`.
 
-use super::Archive;
 use super::insert::parameter_row;
+use super::source::{Read, Row};
 use machine::dut::{Characteristic, Reason};
 use machine::gauge::Side;
-use rusqlite::{Connection, Row, params};
+use rusqlite::{Connection, params};
 
-/// Selects the reasons of one part in order.
-pub(super) const REASONS: &str = "SELECT code, parameter.key, side, detail FROM reason
-    LEFT JOIN parameter ON parameter.id = reason.parameter_id WHERE part_id = ?1 ORDER BY n";
+/// Selects the reasons of parts.
+pub(super) const REASONS: &str = "SELECT part_id, code, parameter.key, side, detail FROM reason
+    LEFT JOIN parameter ON parameter.id = reason.parameter_id";
 
 /// Number of parts that the migration to schema 8 reads at a time.
 const BATCH: usize = 1_000;
@@ -117,25 +117,10 @@ pub(super) fn texts(stored: &serde_json::Value) -> impl Iterator<Item = &str> {
     list.iter().filter_map(serde_json::Value::as_str)
 }
 
-impl Archive {
-    /// Returns one reason for each text; a code that this program does not know gives an unclassified reason.
-    pub(super) fn reasons(&self, part: i64, texts: &[String]) -> rusqlite::Result<Vec<Reason>> {
-        if texts.is_empty() {
-            return Ok(Vec::new());
-        }
-        let mut statement = self.connection.prepare_cached(REASONS)?;
-        let mut stored = statement.query_map([part], read)?;
-        let codes = texts.iter().map(|text| {
-            let code = stored.next().transpose()?.flatten();
-            Ok(code.unwrap_or_else(|| Reason::unclassified(text)))
-        });
-        codes.collect()
-    }
-}
-
-fn read(row: &Row<'_>) -> rusqlite::Result<Option<Reason>> {
-    let (code, key): (String, Option<String>) = (row.get(0)?, row.get(1)?);
-    let (side, detail): (Option<String>, String) = (row.get(2)?, row.get(3)?);
+/// Reads a row of [`REASONS`]; returns `None` for a code that this program does not know.
+pub(super) fn read(row: &Row<'_>) -> Read<Option<Reason>> {
+    let (code, key): (String, Option<String>) = (row.get(1)?, row.get(2)?);
+    let (side, detail): (Option<String>, String) = (row.get(3)?, row.get(4)?);
     let about = key.as_deref().and_then(Characteristic::from_key);
     let side = side.as_deref().and_then(Side::from_name);
     Ok(Reason::stored(&code, about, side, &detail))

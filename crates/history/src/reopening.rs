@@ -2,6 +2,7 @@
 
 use super::error::{Doing, Result};
 use super::{Archive, Moment};
+use rusqlite::types::Value;
 use rusqlite::{Transaction, params};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -46,19 +47,19 @@ pub(super) fn insert(tx: &Transaction<'_>, it: &ReopeningRecord) -> Result<()> {
 impl Archive {
     /// Returns the reopenings of a lot in order of time.
     pub fn reopenings(&self, lot: &str) -> Result<Vec<Reopening>> {
-        let read = |row: &rusqlite::Row<'_>| {
-            Ok(Reopening {
-                at: Moment(row.get(0)?),
-                who: row.get(1)?,
-                why: row.get(2)?,
-            })
-        };
-        self.connection
-            .prepare_cached(
+        self.source
+            .rows(
                 "SELECT at_us, who, why FROM reopening
-                 WHERE lot_id = (SELECT id FROM lot WHERE name = ?1) ORDER BY id",
+                 WHERE lot_id = (SELECT id FROM lot WHERE name = ?) ORDER BY id",
+                &[Value::Text(lot.to_owned())],
+                |row| {
+                    Ok(Reopening {
+                        at: Moment(row.get(0)?),
+                        who: row.get(1)?,
+                        why: row.get(2)?,
+                    })
+                },
             )
-            .and_then(|mut it| it.query_map([lot], read)?.collect())
             .doing("reading the reopenings of a lot")
     }
 }

@@ -5,6 +5,7 @@
 //! 31 of an index entry, and no decoding row by row. Filters that select whole runs read the blobs; other filters, and
 //! runs that were never closed, read the index `measurement_value`. Both ways give the same values in the same order.
 
+use super::source::{Read, Source};
 use super::{Archive, Filter};
 use rusqlite::{Connection, OptionalExtension, params};
 
@@ -90,24 +91,24 @@ fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result
 
 impl Archive {
     /// Returns the values of `param` in order of judgement, one run after the other; `None` when the filter selects
-    /// only some parts of a run, or when parts of two runs alternate in time.
-    pub(super) fn side_by_side(
-        &self,
-        param: &str,
-        filter: &Filter,
-    ) -> rusqlite::Result<Option<Vec<f64>>> {
+    /// only some parts of a run, when parts of two runs alternate in time, and on a
+    /// server, which has no packed values.
+    pub(super) fn side_by_side(&self, param: &str, filter: &Filter) -> Read<Option<Vec<f64>>> {
+        let Source::File(file) = &self.source else {
+            return Ok(None);
+        };
         if !filter.selects_whole_runs() {
             return Ok(None);
         }
         let find = "SELECT id FROM parameter WHERE key = ?1";
-        let mut find = self.connection.prepare_cached(find)?;
+        let mut find = file.prepare_cached(find)?;
         let Some(parameter) = find.query_row([param], |row| row.get(0)).optional()? else {
             return Ok(Some(Vec::new()));
         };
         let mut pieces = Vec::new();
         for run in self.run_rows(filter)? {
-            let piece = match packed(&self.connection, parameter, run)? {
-                None => loose(&self.connection, parameter, run)?,
+            let piece = match packed(file, parameter, run)? {
+                None => loose(file, parameter, run)?,
                 piece => piece,
             };
             pieces.extend(piece);
@@ -118,7 +119,7 @@ impl Archive {
     }
 
     /// Returns the row numbers of the selected runs.
-    pub(super) fn run_rows(&self, filter: &Filter) -> rusqlite::Result<Vec<i64>> {
-        filter.runs().rows(&self.connection, |row| row.get(0))
+    pub(super) fn run_rows(&self, filter: &Filter) -> Read<Vec<i64>> {
+        filter.runs().rows(&self.source, |row| row.get(0))
     }
 }

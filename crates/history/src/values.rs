@@ -2,8 +2,9 @@
 //! packed values of closed runs, or else from the index `measurement_value`.
 
 use super::error::{Doing, Result};
+use super::source::{Read, Row};
 use super::{Archive, Filter};
-use rusqlite::{OptionalExtension, params};
+use rusqlite::types::Value;
 
 /// Values of one parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +33,8 @@ pub enum LimitsSeen {
 
 /// Selects the limits of a parameter in one run.
 pub(super) const LIMITS: &str = "SELECT low, high FROM measurement
-    WHERE parameter_id = (SELECT id FROM parameter WHERE key = ?1)
-      AND population = 'lot' AND run_id = ?2 LIMIT 1";
+    WHERE parameter_id = (SELECT id FROM parameter WHERE key = ?)
+      AND population = 'lot' AND run_id = ? LIMIT 1";
 
 impl Archive {
     /// Returns the values of `param` for the selected parts; leaves out attempts that were repeated and values that
@@ -49,7 +50,7 @@ impl Archive {
         self.limits(param, filter).doing("reading limits")
     }
 
-    fn series(&self, param: &str, filter: &Filter) -> rusqlite::Result<Vec<f64>> {
+    fn series(&self, param: &str, filter: &Filter) -> Read<Vec<f64>> {
         let mut values = match self.side_by_side(param, filter)? {
             Some(values) => values,
             None => self.one_by_one(param, filter)?,
@@ -60,19 +61,19 @@ impl Archive {
         Ok(values)
     }
 
-    fn one_by_one(&self, param: &str, filter: &Filter) -> rusqlite::Result<Vec<f64>> {
-        let select = filter.series(param);
-        let found = select.rows(&self.connection, |row| Ok((row.get(0)?, row.get(1)?)))?;
+    fn one_by_one(&self, param: &str, filter: &Filter) -> Read<Vec<f64>> {
+        let select = filter.series(param, self.source.dialect());
+        let found = select.rows(&self.source, |row| Ok((row.get(0)?, row.get(1)?)))?;
         Ok(in_order(found).collect())
     }
 
     /// Reads the limits of one measurement per run; that is enough, because the recipe does not change within a run.
-    fn limits(&self, param: &str, filter: &Filter) -> rusqlite::Result<LimitsSeen> {
-        let mut one = self.connection.prepare_cached(LIMITS)?;
+    fn limits(&self, param: &str, filter: &Filter) -> Read<LimitsSeen> {
         let mut seen: Option<(Option<f64>, Option<f64>)> = None;
         for run in self.run_rows(filter)? {
-            let pair = one.query_row(params![param, run], |row| Ok((row.get(0)?, row.get(1)?)));
-            match (pair.optional()?, seen) {
+            let of_run = [Value::Text(param.to_owned()), Value::Integer(run)];
+            let pair = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?));
+            match (self.source.first(LIMITS, &of_run, pair)?, seen) {
                 (None, _) => {}
                 (Some(pair), Some(first)) if pair != first => return Ok(LimitsSeen::Differ),
                 (Some(pair), _) => seen = Some(pair),

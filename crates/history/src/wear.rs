@@ -67,7 +67,7 @@ fn read(connection: &Connection, simulated: bool) -> Result<Vec<Wear>> {
 impl Archive {
     /// Returns the use counts of all wearing parts of the real or the simulated rig.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
-        read(&self.connection, simulated)
+        read(self.source.file()?, simulated)
     }
 }
 

@@ -10,7 +10,7 @@
 //!   of its own counts such parts.
 //! - A figure without a value (nothing measured, nothing reported) misses its bar.
 //! - No figure mixes rig time (time of the simulated rig) and wall time: wall time appears only in `collision`,
-//!   `history`, `pace`, `plan`, `storm` and `transient`.
+//!   `fleet`, `history`, `pace`, `plan`, `storm` and `transient`.
 //!
 //! `chamber`, `collision`, `plan`, `ssr`, `thermostat` and `transient` run no lot of the rig. `chamber` and `thermostat`
 //! run the arithmetic of the controller on the simulated chamber, `ssr` on a model of its signals. `collision` compares
@@ -38,6 +38,7 @@ mod error;
 mod exception;
 mod figure;
 pub mod figures;
+mod fleet_trial;
 mod gantt;
 mod gauge;
 mod history;
@@ -98,6 +99,8 @@ pub enum Study {
     Coverage,
     /// Rig time of a test and of a cycle, and its pieces
     Cycle,
+    /// Sending to a PostgreSQL server of its own, and questions to many made-up rigs in it
+    Fleet,
     /// Share of the gauge in the scatter of each characteristic (%GRR)
     Gauge,
     /// Speed of the history on a made-up file
@@ -146,6 +149,7 @@ impl Study {
             Self::Coverage => (100, 10),
             Self::Cycle => (1, 100),
             Self::Decision => (20, 500),
+            Self::Fleet => (20, 20_000),
             Self::Gauge => (1, 10),
             Self::History => (1, 1_000_000),
             Self::Kill => (300, 1),
@@ -172,6 +176,7 @@ impl Study {
             Self::Coverage => parameters::coverage(order),
             Self::Cycle => cycle::study(order),
             Self::Decision => decision::study(order),
+            Self::Fleet => fleet_trial::study(order),
             Self::Gauge => gauge::study(order),
             Self::History => history::study(order),
             Self::Kill => kill::study(order),

@@ -36,8 +36,8 @@ pub(super) struct ExportArgs {
     lang: Option<LangArg>,
 }
 
-pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
-    let archive = &Archive::open(db)?;
+/// Exports parts; marks the runs of the history file `db` as exported, if they come from one.
+pub(super) fn run(archive: &Archive, db: Option<&Path>, args: &ExportArgs) -> anyhow::Result<()> {
     let filter = args.parts.within(&args.range)?;
     checks::known_runs(archive, &filter)?;
     let parameters = checks::parameters(archive, filter.param.as_deref())?;
@@ -61,9 +61,9 @@ pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
         Kind::Xlsx => spreadsheet(archive, &filter, &parameters, args),
     };
     written?;
-    match args.file.as_os_str() == "-" {
-        true => Ok(()),
-        false => copies::exported(db, &filter, &args.file),
+    match db.filter(|_| args.file.as_os_str() != "-") {
+        None => Ok(()),
+        Some(db) => copies::exported(db, &filter, &args.file),
     }
 }
 

@@ -34,9 +34,14 @@ pub(super) const COLUMNS: [Column<LotSummary>; 16] = [
     ("cause", |it| text(it.cause.as_ref())),
 ];
 
+/// Column of an answer of many rigs.
+const RIG: Column<LotSummary> = ("rig", |it| text(it.rig.as_ref()));
+
 pub(super) fn run(archive: &Archive, args: &ListArgs) -> anyhow::Result<()> {
     let filter = args.runs.filter();
     super::query::warn_unknown(archive, &filter);
     let lots = archive.lots(&filter)?;
-    Output::stdout().list(args.format.format(), &lots, &COLUMNS)
+    let of_rigs = lots.iter().any(|it| it.rig.is_some());
+    let rig: &[Column<LotSummary>] = if of_rigs { &[RIG] } else { &[] };
+    Output::stdout().list(args.format.format(), &lots, &[rig, &COLUMNS].concat())
 }

@@ -56,19 +56,22 @@ fn write_table(
             .map(String::as_str)
             .collect(),
     };
-    let mut headings = vec!["time", "lot", "run", "seq", "verdict", "bin"];
+    let of_rigs = first.iter().any(|part| part.rig.is_some());
+    let mut headings = if of_rigs { vec!["rig"] } else { Vec::new() };
+    headings.extend(["time", "lot", "run", "seq", "verdict", "bin"]);
     headings.extend(&shown);
     headings.push("reasons");
     let mut table = Table::new(&headings);
     archive.each(filter, |part| {
-        let mut row = vec![
+        let mut row: Vec<String> = part.rig.iter().filter(|_| of_rigs).cloned().collect();
+        row.extend([
             part.time.local(),
             part.lot.clone(),
             part.run.to_string(),
             part.seq.to_string(),
             part.verdict.clone(),
             text(part.bin.as_ref()),
-        ];
+        ]);
         row.extend(shown.iter().map(|key| figure(number(&part.values, key))));
         row.push(part.reasons.join("; "));
         table.row(out, row)

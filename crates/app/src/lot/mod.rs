@@ -115,6 +115,7 @@ impl LotRunner<'_> {
             orders: orders.orders,
             epoch_us: context.epoch_us,
             history: history_seen,
+            fleet: controls.fleet.subscribe(),
             readings: lines.readings.take(),
             snapshots,
         };

@@ -93,6 +93,7 @@ fn begun(view: &mut View, context: &LotContext) {
         alarms: std::mem::take(&mut view.alarms),
         machine: std::mem::take(&mut view.machine),
         last_run: view.last_run.take(),
+        fleet: std::mem::take(&mut view.fleet),
         ..View::default()
     };
 }

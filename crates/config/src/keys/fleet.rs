@@ -14,9 +14,16 @@ const TARGET: &[Key] = keys! {
         "age of the oldest part that the database lacks at which an alarm is raised; 3600 without it");
 };
 
+const SHIFT: &[Key] = keys! {
+    key("name", Form::Text, "fleet", "name of the shift, for example early");
+    key("start", Form::Text, "fleet", "local time at which it begins, HH:MM");
+    key("end", Form::Text, "fleet", "local time at which it ends, HH:MM; at or before start: on the next day");
+};
+
 /// All keys of `fleet.toml`.
 pub const FILE: &[Key] = keys! {
     optional("site", Form::Text, "fleet", "name of the plant; needed with a target");
     optional("rig", Form::Text, "fleet", "name of the rig, unique in its plant; needed with a target");
     optional("target", Form::List(&Form::Table(TARGET)), "fleet", "databases; each gets everything, at its own pace");
+    optional("shift", Form::List(&Form::Table(SHIFT)), "fleet", "shifts of the plant, for yield and output by shift; they do not overlap");
 };

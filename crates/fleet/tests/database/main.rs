@@ -4,9 +4,12 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod answers;
 mod once;
+mod plans;
 mod proxy;
 mod refusals;
 mod rig;
 mod server;
 mod storm;
+mod troubles;

@@ -2,20 +2,20 @@
 
 use crate::rig::Rig;
 use crate::server::Server;
-use fleet::{Setup, set_up};
+use fleet::{SCHEMA, Setup, set_up};
 use history::Store;
 
 #[tokio::test]
 async fn every_row_of_a_history_arrives_once() {
     let server = Server::start();
     let first = set_up(&server.owner()).await.unwrap();
-    assert!(matches!(first, Setup { from: 0, to: 1, partitions } if partitions >= 72));
+    assert!(matches!(first, Setup { from: 0, to: SCHEMA, partitions } if partitions >= 72));
     let again = set_up(&server.owner()).await.unwrap();
     assert_eq!(
         again,
         Setup {
-            from: 1,
-            to: 1,
+            from: SCHEMA,
+            to: SCHEMA,
             partitions: 0
         }
     );

@@ -4,10 +4,13 @@ use config::{FleetSettings, FleetTarget};
 use fleet::{Pushed, Result, push};
 use history::outbox::Outbox;
 use history::{
-    AlarmRecord, LandingRecord, LotRecord, MeasurementRecord, PartRecord, Row, SampleRecord, Store,
+    AlarmRecord, HoldReason, InterruptedRecord, LandingRecord, LotRecord, LotState, LotStateRecord,
+    MeasurementRecord, OrderRecord, PartRecord, ReferenceCheckRecord, Row, SampleRecord, Store,
     snapshot_hash,
 };
 use machine::dut::Reason;
+use machine::station::catalogue::AlarmCode;
+use machine::station::trouble::Alarm;
 use std::path::PathBuf;
 
 /// Judgement of the first part: 2026-01-31T23:59:00Z, so that parts lie in two months.
@@ -68,12 +71,96 @@ impl Rig {
         store.close_lot(lot, BEGIN_US + 1_000_000_000).unwrap();
     }
 
+    /// Tests four parts of a lot, does `between`, and then notes that the last test was interrupted and another part landed.
+    pub fn cut_off(&self, lot: &str, between: impl FnOnce()) {
+        let mut store = Store::open(&self.db).unwrap();
+        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
+        let record = LotRecord {
+            lot: lot.to_owned(),
+            recipe: "jzc-22f-012".to_owned(),
+            recipe_hash: snapshot_hash(&recipe_snapshot),
+            recipe_snapshot,
+            opened_at_us: BEGIN_US,
+            ..LotRecord::default()
+        };
+        store.begin_lot(&record).unwrap();
+        let parts: Vec<Row> = (1..=4).map(|seq| Row::Part(part(lot, seq, 3))).collect();
+        store.record(&parts).unwrap();
+        between();
+        let interrupted = Row::Interrupted(InterruptedRecord {
+            lot: lot.to_owned(),
+            kind: "lot".to_owned(),
+            seq: 4,
+            reason: Reason::from_text("interrupted: door_open"),
+        });
+        store
+            .record(&[interrupted, Row::Landed(landing(lot, 3))])
+            .unwrap();
+        store.close_lot(lot, at(9)).unwrap();
+    }
+
+    /// Records what happens around the run of a lot after it: a good and a failed reference check, orders, a hold.
+    pub fn gates(&self, lot: &str) {
+        let mut store = Store::open(&self.db).unwrap();
+        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
+        let record = LotRecord {
+            lot: lot.to_owned(),
+            recipe: "jzc-22f-012".to_owned(),
+            recipe_hash: snapshot_hash(&recipe_snapshot),
+            recipe_snapshot,
+            opened_at_us: BEGIN_US,
+            retest: Some("wang".to_owned()),
+            ..LotRecord::default()
+        };
+        store.begin_lot(&record).unwrap();
+        let alarm = Alarm::from(AlarmCode::ReferenceCheckFailed);
+        let check = |at_us, failure| {
+            Row::ReferenceCheck(ReferenceCheckRecord {
+                lot: lot.to_owned(),
+                at_us,
+                text: "G-12-1".to_owned(),
+                failure,
+            })
+        };
+        let order = |at_us, who: &str, order: &str| {
+            Row::Order(OrderRecord {
+                lot: Some(lot.to_owned()),
+                at_us,
+                who: who.to_owned(),
+                what: serde_json::json!({ "order": order, "speed": 0.5 }).to_string(),
+                ..OrderRecord::default()
+            })
+        };
+        let golden = PartRecord {
+            kind: "golden".to_owned(),
+            ..part(lot, 1, 3)
+        };
+        let rows = [
+            Row::Part(golden),
+            check(at(20), None),
+            Row::Part(part(lot, 5, 3)),
+            check(at(40), Some(alarm.clone())),
+            order(at(41), "li", "start"),
+            order(at(42), "zhao", "people"),
+            Row::LotState(LotStateRecord {
+                lot: lot.to_owned(),
+                state: LotState::Held,
+                why: Some(HoldReason::Alarm(alarm)),
+                at_us: at(43),
+            }),
+        ];
+        rows.iter()
+            .for_each(|row| store.record(std::slice::from_ref(row)).unwrap());
+        store.close_lot(lot, at(44)).unwrap();
+    }
+
     /// Returns the settings of the rig.
     pub fn settings(&self, target: &FleetTarget) -> FleetSettings {
         FleetSettings {
             site: "suzhou".to_owned(),
             rig: self.name.clone(),
             targets: vec![target.clone()],
+            ..FleetSettings::default()
         }
     }
 

@@ -1,7 +1,7 @@
 //! Checks the members of a filter: a misspelt value gives an error that names the member instead of an empty result.
 
 use super::{InquiryError, Result};
-use crate::{Archive, Filter};
+use crate::{Archive, Filter, LotSummary};
 
 /// Values of the member `verdict`.
 pub const VERDICTS: [&str; 4] = ["pass", "fail", "void", "unjudged"];
@@ -48,6 +48,22 @@ pub fn parameters(archive: &Archive, asked: Option<&str>) -> Result<Vec<String>>
     let names: Vec<&str> = known.iter().map(String::as_str).collect();
     one_of("param", asked, &names)?;
     Ok(known)
+}
+
+/// Fails when the runs are of several rigs, for a question about one lot; a file has runs of one rig.
+pub fn one_rig(runs: &[LotSummary]) -> Result<()> {
+    let first = runs.first().and_then(|it| it.rig.as_ref());
+    let other = runs
+        .iter()
+        .filter_map(|it| it.rig.as_ref())
+        .find(|it| Some(*it) != first);
+    match (first, other) {
+        (Some(first), Some(other)) => {
+            let reason = format!("runs of {first} and of {other} have this lot; choose one rig");
+            Err(InquiryError::member("rig", reason))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Fails when no run has the filter's lot, run and recipe.

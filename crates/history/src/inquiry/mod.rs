@@ -28,6 +28,7 @@ pub mod instruments;
 pub mod paper;
 pub mod pareto;
 pub mod rejudge;
+pub mod shifts;
 mod use_of_time;
 
 pub use error::{InquiryError, Result};

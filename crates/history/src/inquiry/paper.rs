@@ -56,6 +56,7 @@ pub fn lot_report(
     }
     checks::known_runs(archive, filter)?;
     let runs = archive.lots(filter)?;
+    checks::one_rig(&runs)?;
     let report = LotReport {
         lot,
         runs: &runs,
@@ -100,6 +101,7 @@ pub fn part_certificate(
     };
     checks::known_runs(archive, filter)?;
     let runs = archive.lots(filter)?;
+    checks::one_rig(&runs)?;
     let of_part = |part: &&crate::Part| {
         let mut runs = runs.iter();
         runs.any(|run| run.lot == part.lot && run.run == part.run)

@@ -91,7 +91,9 @@ impl Rejudging {
         };
         checks::known_runs(archive, &filter)?;
         let mut bases = BTreeMap::new();
-        for run in archive.lots(&filter)? {
+        let runs = archive.lots(&filter)?;
+        checks::one_rig(&runs)?;
+        for run in runs {
             let text = archive.recipe(&run.recipe_hash)?;
             let Some(basis) = text.as_deref().and_then(Basis::of) else {
                 continue;

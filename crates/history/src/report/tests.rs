@@ -37,6 +37,7 @@ fn paper(language: Lang) -> Paper {
 fn run() -> LotSummary {
     LotSummary {
         lot: EVIL.into(),
+        rig: None,
         run: 1,
         recipe: "jzc-22f-012".into(),
         recipe_hash: "738012c9fcaf4919aa".into(),

@@ -323,7 +323,8 @@ impl Archive {
     /// # Errors
     /// Fails when the history cannot be read.
     pub fn plans(&self, limit: u32) -> Result<Vec<PlanEntry>> {
-        self.connection
+        self.source
+            .file()?
             .prepare(&format!("{ENTRIES} ORDER BY id DESC LIMIT ?1"))
             .and_then(|mut it| it.query_map([limit], entry)?.collect())
             .doing("reading plans")
@@ -334,7 +335,7 @@ impl Archive {
     /// # Errors
     /// Fails when the history cannot be read.
     pub fn plan_under_way(&self) -> Result<Option<i64>> {
-        under_way(&self.connection).doing("reading the plan under way")
+        under_way(self.source.file()?).doing("reading the plan under way")
     }
 
     /// Returns a plan with what is done of it; `None` when no plan has this number.
@@ -344,16 +345,17 @@ impl Archive {
     pub fn plan(&self, number: i64) -> Result<Option<StartedPlan>> {
         const DOING: &str = "reading a plan";
         let select = format!("{ENTRIES} WHERE id = ?1");
-        let found = self.connection.query_row(&select, [number], entry);
+        let found = self.source.file()?.query_row(&select, [number], entry);
         let Some(entry) = found.optional().doing(DOING)? else {
             return Ok(None);
         };
         let body = "SELECT body FROM tooling_plan WHERE id = ?1";
         let body: serde_json::Value = self
-            .connection
+            .source
+            .file()?
             .query_row(body, [number], |row| row.get(0))
             .doing(DOING)?;
-        let plan =
+        let plan: rusqlite::Result<_> =
             serde_json::from_value(body).map_err(|error| FromSqlError::Other(error.into()).into());
         let read = |row: &Row<'_>| {
             Ok(StepDone {
@@ -365,7 +367,7 @@ impl Archive {
         };
         let ticks =
             "SELECT step, done_us, who, role FROM tooling_step WHERE plan_id = ?1 ORDER BY step";
-        let ticks = self.connection.prepare(ticks);
+        let ticks = self.source.file()?.prepare(ticks);
         let ticks = ticks.and_then(|mut it| it.query_map([number], read)?.collect());
         Ok(Some(StartedPlan {
             entry,

@@ -25,7 +25,7 @@ named! {
 /// What clears an alarm, that is, ends its cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClearedBy {
-    /// The sensor that has shown the cause, or the history once it is written again.
+    /// The sensor that has shown the cause, or the program once the history is written or a database has its rows.
     Sensor,
     /// The order `clear`, `unhold` or `reset`.
     Operator,
@@ -230,6 +230,8 @@ codes! {
     Worn of Wearing = "worn", Nothing, Operator;
     /// The rig scatters more than `rig.toml` or the recipe promises.
     PromiseBroken of Promise = "promise_broken", Nothing, Operator;
+    /// A database of the fleet lacks parts for longer than it may.
+    FleetLate by "database" = "fleet_late", Nothing, Sensor;
     /// The stored calibration is not valid for a lot.
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }

@@ -56,6 +56,7 @@ impl Station {
         there.extend(self.still_starved(now, inputs.image));
         there.extend(inputs.history.alarm().cloned());
         there.extend(inputs.reader.clone());
+        there.extend(inputs.fleet.iter().cloned());
         self.alarms.annunciator.sensed(&there);
         let trouble = &mut output.notes.trouble;
         if !packml::is_aborted(self.machine.state) {

@@ -302,6 +302,13 @@ impl Alarm {
             .with("said", why)
     }
 
+    /// Returns the alarm that a database of the fleet lacks parts for longer than `limit_s`, seconds.
+    pub fn fleet_late(database: &str, limit_s: u32) -> Self {
+        Self::from(AlarmCode::FleetLate)
+            .with("database", database)
+            .with("limit_s", limit_s)
+    }
+
     /// Returns the alarm that the stored calibration is unusable, so that no lot begins.
     pub fn calibration_invalid(why: &Message) -> Self {
         Self::from(AlarmCode::CalibrationInvalid).with_inner("detail", why)

@@ -28,6 +28,8 @@ pub struct Inputs<'a> {
     pub readings: Vec<Option<String>>,
     /// Alarm about the code reader while its port is lost.
     pub reader: Option<Alarm>,
+    /// Alarms about the databases of the fleet while they lack parts for too long.
+    pub fleet: Vec<Alarm>,
     /// Lateness of this computer in the last seconds, if it is long enough to explain an input that was not read.
     pub host_late: Option<Span>,
     /// True when the operator ends the lot once the parts inside are finished (one Ctrl-C).

@@ -63,6 +63,7 @@ pub struct Machine {
     pub mock: MockRig,
     pub bus: Option<Alarm>,
     pub host_late: Option<Span>,
+    pub fleet: Vec<Alarm>,
     pub stop: bool,
     pub abort: bool,
     /// Key of an actuator that never arrives.
@@ -100,6 +101,7 @@ pub fn quiet(image: &Image) -> Inputs<'_> {
         bus: Vec::new(),
         readings: Vec::new(),
         reader: None,
+        fleet: Vec::new(),
         host_late: None,
         stop: false,
         abort: false,
@@ -147,6 +149,7 @@ impl Machine {
             mock,
             bus: None,
             host_late: None,
+            fleet: Vec::new(),
             stop: false,
             abort: false,
             sticking: None,
@@ -300,6 +303,7 @@ impl Machine {
             recorded,
             bus: bus.iter().cloned().collect(),
             host_late: self.host_late,
+            fleet: self.fleet.clone(),
             stop,
             abort: self.abort,
             ..quiet(&image)

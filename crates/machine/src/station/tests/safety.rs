@@ -250,3 +250,16 @@ fn missing_air_after_an_emergency_stop_is_reported() {
     machine.mock.set(DigitalIn::EmergencyStopOk, true);
     assert_eq!(new_alarms(&mut machine, 3_000), ["air_lost"]);
 }
+
+#[test]
+fn a_late_database_alarms_but_stops_nothing() {
+    let mut machine = under_test();
+    machine.fleet = vec![Alarm::fleet_late("postgres://db/relayrig", 60)];
+    let output = machine.turn();
+    assert_eq!(output.record.alarms, machine.fleet);
+    assert!(!output.rig.safe);
+    assert!(machine.turn().record.alarms.is_empty(), "it is one alarm");
+    machine.fleet.clear();
+    assert!(machine.turn().record.alarms_changed, "it has returned");
+    assert_eq!(machine.run().record.ending, Some(Ending::Complete));
+}

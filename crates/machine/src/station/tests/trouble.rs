@@ -69,6 +69,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::history_lost("relayrig.db", "history_locked", "recording: locked"),
         Alarm::stale(DigitalIn::AirOk),
         Alarm::serial_reader_lost("gone"),
+        Alarm::fleet_late("postgres://rig_07@db.plant/relayrig", 3600),
         Alarm::host_late(&tried, Span::ms(312)),
         Alarm::button_stuck(DigitalIn::ButtonStop),
         Alarm::part_sticks(),

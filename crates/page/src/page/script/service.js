@@ -53,9 +53,21 @@ function showHost() {
   }));
 }
 
+// Shows what each database of the fleet lacks; a rig without one shows no table.
+function showFleet() {
+  at("fleet_shown").hidden = !view.fleet.length;
+  at("fleet").replaceChildren(...view.fleet.map((it) => {
+    // What a database says is English.
+    const element = row(it.url, integerText(it.lag_parts), integerText(Math.round(it.lag_s)), integerText(it.sent_parts), it.last_error ?? NONE);
+    if (it.late || it.last_error) element.className = "bad";
+    return element;
+  }));
+}
+
 PAGES.bus = {show: () => {
   showBus();
   showInstruments();
+  showFleet();
   showHost();
 }};
 

@@ -1,0 +1,138 @@
+//! Answers the questions of a history from a database with many rigs.
+//!
+//! A reader has one transaction that only reads, so that all answers of a command are of one moment. It needs no more than
+//! the role `relayrig_reader`.
+
+use crate::error::{FleetError, Result};
+use crate::link::Link;
+use crate::tables::{Scope, translated};
+use crate::value::{Bound, Cell};
+use config::FleetTarget;
+use history::{Receiver, Server, ServerError, Value};
+use std::sync::atomic::{AtomicU32, Ordering};
+use tokio::runtime::{Builder, Runtime};
+use tokio_postgres::Row;
+use tokio_postgres::types::ToSql;
+
+const DOING: &str = "asking";
+
+/// Rows of one page.
+const PAGE: usize = 1000;
+
+/// Which rigs answer; a member that is absent selects all.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Rigs {
+    /// Name of the plant.
+    pub site: Option<String>,
+    /// Name of the rig.
+    pub rig: Option<String>,
+}
+
+/// A connection that answers questions.
+#[derive(Debug)]
+pub struct Reader {
+    runtime: Runtime,
+    link: Link,
+    scope: Scope,
+    /// Cursors opened so far.
+    cursors: AtomicU32,
+}
+
+impl Reader {
+    /// Connects to a database and begins to read.
+    ///
+    /// # Errors
+    /// Fails as [`Link::open`] does, and when the database has no rig of this name.
+    pub fn open(target: &FleetTarget, rigs: &Rigs) -> Result<Self> {
+        let runtime = Builder::new_current_thread().enable_all().build();
+        let runtime = runtime.map_err(|error| FleetError::Runtime { error })?;
+        let (link, scope) = runtime.block_on(async {
+            let link = Link::open(target).await?;
+            let begin = "SET idle_in_transaction_session_timeout = '1h'; SET enable_partitionwise_join = on; SET jit = off; SET work_mem = '64MB';
+                BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
+            link.step(DOING, link.client.batch_execute(begin)).await?;
+            let scope = scope(&link, rigs).await?;
+            Ok::<_, FleetError>((link, scope))
+        })?;
+        Ok(Self {
+            runtime,
+            link,
+            scope,
+            cursors: AtomicU32::new(0),
+        })
+    }
+
+    fn ask(&self, sql: &str, values: &[Value]) -> Result<Vec<Row>> {
+        let bound: Vec<Bound<'_>> = values.iter().map(Bound).collect();
+        let bound: Vec<&(dyn ToSql + Sync)> = bound.iter().map(|it| it as _).collect();
+        self.runtime.block_on(self.link.rows(DOING, sql, &bound))
+    }
+}
+
+impl Server for Reader {
+    fn name(&self) -> &str {
+        &self.link.target
+    }
+
+    fn rows(
+        &self,
+        sql: &str,
+        values: &[Value],
+    ) -> std::result::Result<Vec<Vec<Value>>, ServerError> {
+        let rows = self.ask(&translated(sql, &self.scope), values)?;
+        Ok(rows.iter().map(cells).collect())
+    }
+
+    fn each(
+        &self,
+        sql: &str,
+        values: &[Value],
+        each: &mut Receiver<'_>,
+    ) -> std::result::Result<(), ServerError> {
+        let cursor = format!("c{}", self.cursors.fetch_add(1, Ordering::Relaxed));
+        let sql = translated(sql, &self.scope);
+        self.ask(
+            &format!("DECLARE {cursor} NO SCROLL CURSOR FOR {sql}"),
+            values,
+        )?;
+        let next = format!("FETCH {PAGE} FROM {cursor}");
+        loop {
+            let rows = self.ask(&next, &[])?;
+            let stopped = rows.iter().any(|row| each(&cells(row)).is_break());
+            if stopped || rows.len() < PAGE {
+                break;
+            }
+        }
+        self.ask(&format!("CLOSE {cursor}"), &[])?;
+        Ok(())
+    }
+}
+
+fn cells(row: &Row) -> Vec<Value> {
+    (0..row.len()).map(|at| row.get::<_, Cell>(at).0).collect()
+}
+
+/// Finds the histories of the rigs.
+async fn scope(link: &Link, rigs: &Rigs) -> Result<Scope> {
+    let Rigs { site, rig } = rigs;
+    if site.is_none() && rig.is_none() {
+        return Ok(Scope::All);
+    }
+    let select =
+        "SELECT history.id FROM relayrig.history JOIN relayrig.rig ON rig.id = history.rig_id
+        WHERE ($1::text IS NULL OR site = $1) AND ($2::text IS NULL OR rig = $2) ORDER BY 1";
+    let found = link.rows(DOING, select, &[site, rig]).await?;
+    if !found.is_empty() {
+        return Ok(Scope::Histories(
+            found.iter().map(|row| row.get(0)).collect(),
+        ));
+    }
+    let known = "SELECT coalesce(string_agg(site || '/' || rig, ', ' ORDER BY site, rig), 'none') FROM (SELECT site, rig
+        FROM relayrig.rig ORDER BY 1, 2 LIMIT 20) AS known";
+    let named = |it: &Option<String>| it.as_deref().unwrap_or("*").to_owned();
+    Err(FleetError::NoRig {
+        target: link.target.clone(),
+        found: format!("{}/{}", named(site), named(rig)),
+        expected: link.row(DOING, known, &[]).await?.get(0),
+    })
+}
