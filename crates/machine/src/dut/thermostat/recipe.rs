@@ -129,7 +129,9 @@ impl KindRecipe for ThermostatRecipe {
         });
         let device = super::Device::new(recipe, self, points, *rig.accuracy);
         let device = super::Device {
-            stated: rig.certificate.and_then(|it| it.chamber),
+            stated: rig
+                .certificate
+                .and_then(|it| it.chamber.as_deref().copied()),
             ..device.calibrated(of_rack)
         };
         Ok(Device::Thermostat(Box::new(device)))
