@@ -60,7 +60,10 @@ fn a_batch_of_forty_agrees_with_the_truth() {
         let squares = errors.iter().map(|it| (2.0 * it).powi(2)).sum::<f64>();
         let ratio = squares / errors.len() as f64;
         let [low, high] = chi_squared(errors.len());
-        assert!((low..=high).contains(&ratio), "{key}: {ratio}, expected {low} to {high}");
+        assert!(
+            (low..=high).contains(&ratio),
+            "{key}: {ratio}, expected {low} to {high}"
+        );
     }
 }
 

@@ -120,6 +120,16 @@ impl Program {
         self.ramp.now()
     }
 
+    /// Adds a pass after the last one and begins it; `lag_s` is the lag of the parts.
+    pub fn repeat(&mut self, pass: Pass, lag_s: f64) {
+        assert!(
+            self.phase == Phase::Cool,
+            "a repeat before the last pass is over"
+        );
+        self.passes.push(Planned { pass, lag_s });
+        self.enter(Phase::Approach);
+    }
+
     /// Changes windows and lag of the passes to come, and of the present one during its approach. The caller does this
     /// when earlier passes have shown where the parts switch.
     pub fn narrow(&mut self, operate: Window, reset: Window, lag_s: f64) {
@@ -287,6 +297,22 @@ mod tests {
         for (found, expected) in found.into_iter().zip(expected) {
             assert!((found - expected).abs() < 0.3, "{found}, {expected}");
         }
+    }
+
+    #[test]
+    fn a_repeat_visits_its_own_windows_after_the_last_pass() {
+        let mut program = Program::new(25.0, vec![PASS], 39.0, 45.0);
+        run_until(&mut program, |it| it.phase() == Phase::Cool);
+        let slow = Pass {
+            rate_k_per_min: 1.0,
+            operate: NARROW[0],
+            reset: NARROW[1],
+        };
+        program.repeat(slow, 39.0);
+        assert_eq!((program.phase(), program.pass()), (Phase::Approach, 1));
+        let turn_c = run_until(&mut program, |it| it.phase() == Phase::Descent);
+        assert!((turn_c - (86.0 + 3.0 + 0.65)).abs() < 0.3, "{turn_c}");
+        run_until(&mut program, |it| it.phase() == Phase::Cool);
     }
 
     #[test]

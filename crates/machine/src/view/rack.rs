@@ -34,16 +34,16 @@ pub struct SocketView {
 impl RackView {
     /// Makes the view; `closed` returns whether the contact of the socket with this number is closed.
     pub fn new(batch: &Batch, closed: impl Fn(u16) -> Option<bool>) -> Self {
-        let socket = |it: &crate::rig::rack::Socket| SocketView {
+        let sockets = batch.rack().sockets().iter().map(|it| SocketView {
             number: it.number,
             row: it.row,
             column: it.column,
             closed: closed(it.number),
-        };
+        });
         Self {
             phase: batch.phase().name(),
             batch: batch.number(),
-            sockets: batch.rack().sockets().iter().map(socket).collect(),
+            sockets: sockets.collect(),
             test: batch.shown(),
         }
     }

@@ -56,7 +56,7 @@ pub struct Certificate {
     pub map: SocketMap,
     /// Response of the chamber, which is no statement of a laboratory; `None` when batches identify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub chamber: Option<StatedResponse>,
+    pub chamber: Option<Box<StatedResponse>>,
 }
 
 /// The certificate as the history keeps it.

@@ -17,6 +17,9 @@ use chamber::program::Window;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// Rate of a slow repeat below which a repeat takes too long, K/min; a recipe may be slower.
+const LEAST_REPEAT: f64 = 0.5;
+
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ThermostatRecipe {
@@ -93,7 +96,8 @@ impl ThermostatRecipe {
             learning: fast.into_iter().chain(known.clone()).collect(),
             known,
             every: self.test.learning_every,
-            repeat: self.test.rate_k_per_min,
+            repeat: (self.test.rate_k_per_min / 2.0)
+                .max(LEAST_REPEAT.min(self.test.rate_k_per_min)),
         }
     }
 }
@@ -125,7 +129,9 @@ impl KindRecipe for ThermostatRecipe {
         });
         let device = super::Device::new(recipe, self, points, *rig.accuracy);
         let device = super::Device {
-            stated: rig.certificate.and_then(|it| it.chamber),
+            stated: rig
+                .certificate
+                .and_then(|it| it.chamber.as_deref().copied()),
             ..device.calibrated(of_rack)
         };
         Ok(Device::Thermostat(Box::new(device)))

@@ -14,6 +14,7 @@ mod contacts;
 mod creep;
 mod drop;
 mod passes;
+mod repeat;
 mod results;
 mod seconds;
 mod trial;

@@ -4,6 +4,7 @@ use super::super::Finding;
 use super::super::device::{Device, Lesson};
 use super::super::recipe::Control;
 use super::contacts::Events;
+use super::repeat::{self, Shown};
 use super::trial::Trial;
 use crate::dut::experiment::Experiment;
 use chamber::control::increment::{Increment, Rules};
@@ -86,7 +87,7 @@ impl Work {
         device: &Device,
         experiment: Option<Experiment>,
         seen: &Seen,
-        (record, events): (&Record, &dyn Fn() -> Vec<Events>),
+        (record, parts): (&Record, &dyn Fn() -> Vec<Shown>),
     ) -> Result<Option<Command>, Finding> {
         let control_c = seen.control_c.ok_or(Finding::SensorBroken)?;
         match self {
@@ -119,7 +120,7 @@ impl Work {
                 *left -= 1;
                 Ok(Some(Command::OFF))
             }
-            Self::Passes(passes) => passes.step(device, seen, control_c, record, events),
+            Self::Passes(passes) => passes.step(device, seen, control_c, record, parts),
             Self::Trial(trial) => trial.step(seen, control_c),
         }
     }
@@ -168,6 +169,8 @@ pub struct Passes {
     stayed_s: u32,
     lag_s: f64,
     expected: [Window; 2],
+    /// Number of slow repeats so far.
+    repeated: u32,
 }
 
 impl Passes {
@@ -200,6 +203,7 @@ impl Passes {
             stayed_s: 0,
             lag_s,
             expected,
+            repeated: 0,
         }
     }
 
@@ -220,7 +224,7 @@ impl Passes {
         seen: &Seen,
         control_c: f64,
         record: &Record,
-        events: &dyn Fn() -> Vec<Events>,
+        parts: &dyn Fn() -> Vec<Shown>,
     ) -> Result<Option<Command>, Finding> {
         let before = (self.program.phase(), self.program.pass());
         let set = self.program.step(control_c, seen.waiting);
@@ -231,11 +235,14 @@ impl Passes {
             0
         };
         if pass > before.1 {
-            let [operate, reset] = self.shown(record, &events());
+            let events: Vec<Events> = parts().into_iter().map(|it| it.events).collect();
+            let [operate, reset] = self.shown(record, &events);
             self.program.narrow(operate, reset, self.lag_s);
         }
         if phase == Phase::Cool {
-            return Ok((self.stayed_s < AFTER_S).then_some(Command::OFF));
+            let over = self.stayed_s >= AFTER_S;
+            let goes_on = !over || self.repeats(device, record, parts);
+            return Ok(goes_on.then_some(Command::OFF));
         }
         let observed = Observed {
             measured_c: control_c,
@@ -256,6 +263,23 @@ impl Passes {
         }
         self.check_slope(device, phase, control_c)?;
         Ok(Some(command))
+    }
+
+    /// Begins a slow repeat if a part needs one and the recipe has one left; returns true when it begins.
+    fn repeats(
+        &mut self,
+        device: &Device,
+        record: &Record,
+        parts: &dyn Fn() -> Vec<Shown>,
+    ) -> bool {
+        let left = self.repeated < device.recipe.decision.slow_repeats;
+        let pass = left.then(|| repeat::pass(device, record, &parts(), self.ambient_c));
+        let Some(pass) = pass.flatten() else {
+            return false;
+        };
+        self.program.repeat(pass, self.lag_s);
+        (self.repeated, self.passes) = (self.repeated + 1, self.passes + 1);
+        true
     }
 
     /// Checks the slope over the last minute within the windows against the limit of the recipe; fails with

@@ -51,15 +51,11 @@ pub struct Recorded<'a> {
 /// Returns lag and scatter of the lot, and true when passes have measured the lag. The lag comes from this batch, else
 /// from an earlier one, else from the recipe. At least half of the parts must show a lag: in a batch of a single pass,
 /// a defective part that switches twice shows none.
-pub fn lot(device: &Device, recorded: &Recorded) -> (LotLag, bool, f64) {
-    let all: Vec<Switching> = recorded
-        .events
-        .iter()
-        .map(|it| it.switching.clone())
-        .collect();
+pub fn lot(device: &Device, record: &Record, events: &[Events]) -> (LotLag, bool, f64) {
+    let all: Vec<Switching> = events.iter().map(|it| it.switching.clone()).collect();
     let test = &device.thermostat.test;
     let told = (test.learning_k_per_min != test.rate_k_per_min)
-        .then(|| lot_lag(recorded.record, &all))
+        .then(|| lot_lag(record, &all))
         .flatten()
         .filter(|it| 2 * it.parts >= all.len());
     let known = told.or(device.lesson.as_ref().and_then(|it| it.lag));
@@ -73,13 +69,13 @@ pub fn lot(device: &Device, recorded: &Recorded) -> (LotLag, bool, f64) {
         scatter_k: device.lesson.as_ref().map_or(SCATTER_K, |it| it.scatter_k),
         sensor_lag_s: SENSOR_LAG_S,
     };
-    let scatter_k = lot_scatter(recorded.record, &all, &lag, &assumed);
+    let scatter_k = lot_scatter(record, &all, &lag, &assumed);
     (lag, known.is_some(), scatter_k)
 }
 
 /// Returns the trouble of a lag that is far from what was known before the batch.
 pub fn unexpected_lag(device: &Device, recorded: &Recorded) -> Option<BatchTrouble> {
-    let (found, is_told, _) = lot(device, recorded);
+    let (found, is_told, _) = lot(device, recorded.record, &recorded.events);
     let lesson = device.lesson.as_ref().and_then(|it| it.lag);
     let stated_s = device.thermostat.part.lag_s - SENSOR_LAG_S;
     let expected_s = lesson.map_or(stated_s, |it| it.seconds);
@@ -98,7 +94,7 @@ pub fn batch(
     let Some(chamber) = work.and_then(Work::chamber) else {
         return void(device, order, Some(Ended::Found(Finding::NotIdentified)));
     };
-    let (lag, is_known, scatter_k) = lot(device, recorded);
+    let (lag, is_known, scatter_k) = lot(device, recorded.record, &recorded.events);
     let expected = device.thermostat.windows(&device.recipe.limits);
     let windows = expected.map(|it| shown(recorded.record, &recorded.events, lag.seconds, it));
     let Some(windows) = windows else {
@@ -207,7 +203,7 @@ fn contact(
 }
 
 /// Where a part was: what the certificate of the rig says about its temperature.
-struct Site<'a> {
+pub struct Site<'a> {
     certificate: Option<&'a Certificate>,
     /// Place of the socket in the order of the numbers, from 0.
     place: usize,
@@ -215,7 +211,8 @@ struct Site<'a> {
 }
 
 impl<'a> Site<'a> {
-    fn of(device: &'a Device, socket: u16, ambient_c: f64) -> Self {
+    /// Makes the site of a socket.
+    pub fn of(device: &'a Device, socket: u16, ambient_c: f64) -> Self {
         let all = device.points.sockets.iter();
         Self {
             certificate: device.certificate.as_deref(),
@@ -225,7 +222,7 @@ impl<'a> Site<'a> {
     }
 
     /// Returns the temperatures of the part, which the estimate states as readings of the reference thermometer.
-    fn corrected(&self, found: Estimate) -> Estimate {
+    pub fn corrected(&self, found: Estimate) -> Estimate {
         let correct = |it: Value| Value {
             value: self.certificate.map_or(it.value, |of_rack| {
                 of_rack.correct(it.value, self.place, self.ambient_c)
@@ -245,7 +242,8 @@ impl<'a> Site<'a> {
         }
     }
 
-    fn calibrations(&self) -> Calibrations {
+    /// Returns the calibrations behind the correction.
+    pub fn calibrations(&self) -> Calibrations {
         self.certificate
             .map_or_else(Calibrations::default, Certificate::remaining)
     }

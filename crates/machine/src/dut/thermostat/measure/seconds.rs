@@ -3,10 +3,11 @@
 use super::super::Finding;
 use super::super::device::{Device, WHOLE_V};
 use super::Ended;
-use super::contacts::{Contact, Events};
+use super::contacts::Contact;
 use super::creep::{EACH_SECOND, Pulse};
 use super::drop;
 use super::passes::{Seen, Work};
+use super::repeat::Shown;
 use crate::dut::batch_shown::{AirCurve, BatchShown};
 use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
@@ -226,17 +227,12 @@ impl Seconds {
             ambient_c: self.ambient_c,
             waiting: waiting(contacts, now_s),
         };
-        let events = || {
-            contacts
-                .iter()
-                .map(Contact::events)
-                .collect::<Vec<Events>>()
-        };
+        let parts = || contacts.iter().filter_map(|it| part(device, it)).collect();
         self.check_sensors(&seen)?;
         let Some(work) = &mut self.work else {
             return Ok(Some(Command::OFF));
         };
-        let recorded = (&self.record, &events as &dyn Fn() -> Vec<Events>);
+        let recorded = (&self.record, &parts as &dyn Fn() -> Vec<Shown>);
         let next = work.step(device, self.experiment, &seen, recorded)?;
         self.ambient_c = work.ambient_c().unwrap_or(self.ambient_c);
         self.command = next.unwrap_or(Command::OFF);
@@ -314,6 +310,15 @@ impl Seconds {
             (false, false, false) => Ok(()),
         }
     }
+}
+
+/// Returns what the contact of a part has shown so far.
+fn part(device: &Device, contact: &Contact) -> Option<Shown> {
+    let socket = device.points.of_contact(contact.input())?;
+    Some(Shown {
+        socket: socket.number,
+        events: contact.events(),
+    })
 }
 
 fn levels(device: &Device, command: Command) -> Act {
