@@ -42,7 +42,8 @@ pub fn compare(
         asked.questions += 1;
         asked.bytes += here.as_ref().map_or(0, String::len);
         asked.refused += u32::from(here.is_err());
-        let [here, there] = [here, there].map(|it| it.unwrap_or_else(|refusal| refusal));
+        let [here, there] =
+            [here, there].map(|it| it.unwrap_or_else(|refused| refused.to_string()));
         if here != there {
             asked.different.push(told(&question, &here, &there));
         }

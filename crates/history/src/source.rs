@@ -204,6 +204,7 @@ impl Source {
 impl Dialect {
     /// Returns the condition that `column` is one of `ids`, with the values of its parameters.
     pub fn among(self, column: &str, ids: &[i64]) -> (String, Vec<Value>) {
+        assert!(!ids.is_empty(), "a list of no rows");
         let list = || ids.iter().map(i64::to_string).collect::<Vec<_>>().join(",");
         match self {
             // The text stays the same for every list, so SQLite keeps the prepared statement.
@@ -218,6 +219,10 @@ impl Dialect {
     /// Returns a condition by which a server finds the partition of `table` for parts judged from `first_us` to `last_us`;
     /// nothing for a file, whose tables have no partitions.
     pub fn judged(self, table: &str, (first_us, last_us): (i64, i64)) -> String {
+        assert!(
+            first_us <= last_us,
+            "a time span that ends before it begins"
+        );
         match self {
             Self::File => String::new(),
             Self::Server => format!(" AND {table}.judged_at_us BETWEEN {first_us} AND {last_us}"),

@@ -39,7 +39,12 @@ pub(super) enum Question {
 /// Number of kinds of questions.
 const KINDS: usize = 20;
 
-type Answer = Result<String, String>;
+/// A question was refused, in these words.
+#[derive(Debug, thiserror::Error)]
+#[error("refused: {0}")]
+pub(super) struct Refused(String);
+
+type Answer = Result<String, Refused>;
 
 impl Question {
     /// Draws a question.
@@ -179,6 +184,6 @@ fn json(it: &impl Serialize) -> String {
     serde_json::to_string(it).unwrap_or_else(|error| error.to_string())
 }
 
-fn said(error: impl std::fmt::Display) -> String {
-    format!("refused: {error}")
+fn said(error: impl std::fmt::Display) -> Refused {
+    Refused(error.to_string())
 }

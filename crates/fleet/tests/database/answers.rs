@@ -5,7 +5,9 @@ use crate::server::Server;
 use config::{Folder, load_recipe};
 use fleet::differential::compare;
 use fleet::{Reader, Rigs, set_up};
+use history::inquiry::shifts::{Shift, by_shift};
 use history::{Archive, Filter};
+use jiff::tz::TimeZone;
 
 /// Opens the database for the rigs of this name.
 pub fn database(server: &Server, rig: Option<&str>) -> Archive {
@@ -101,4 +103,35 @@ fn an_unknown_rig_is_refused_with_those_there_are() {
         refused.contains("found no rig suzhou/rig-9, expected one of suzhou/rig-1, suzhou/rig-2"),
         "{refused}"
     );
+}
+
+#[test]
+fn shifts_count_alike_in_file_and_database() {
+    let (server, rigs) = two_rigs();
+    let file = Archive::open(&rigs[0].db).unwrap();
+    let shifts =
+        [("early", (6 * 60, 14 * 60)), ("night", (22 * 60, 30 * 60))].map(|(name, minutes)| {
+            Shift {
+                name: name.to_owned(),
+                minutes,
+            }
+        });
+    let filter = Filter {
+        since: Some("2026-01-31T00:00:00Z".parse().unwrap()),
+        until: Some("2026-02-02T00:00:00Z".parse().unwrap()),
+        ..Filter::default()
+    };
+    let ask = |archive: &Archive| by_shift(archive, &filter, &shifts, &TimeZone::UTC).unwrap();
+    let here = ask(&file);
+    assert_eq!(
+        here.len(),
+        1,
+        "only the night of 31 January has parts: {here:?}"
+    );
+    let parts = file.count_parts(&Filter::default()).unwrap();
+    assert_eq!(here[0].counts.parts, parts - 1, "one was tested again");
+    let mut there = ask(&database(&server, None));
+    assert_eq!(there.len(), 2, "one entry for each rig");
+    assert_eq!(there[0].rig.take().as_deref(), Some("suzhou/rig-1"));
+    assert_eq!(there[0], here[0]);
 }

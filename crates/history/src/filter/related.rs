@@ -89,6 +89,7 @@ impl Filter {
     /// Counts the judged parts by time span, run and verdict. Span `n` ends before `edges[n]`, microseconds, ascending; the
     /// last span has no end.
     pub(in super::super) fn by_span(&self, edges: &[i64]) -> Select {
+        assert!(edges.is_sorted(), "spans out of order");
         let mut counted = Select::new(format!(
             "SELECT {} AS span, part.run_id, part.verdict, count(*) FROM part WHERE part.verdict <> 'unjudged'",
             span(edges, 0)

@@ -61,6 +61,9 @@ pub fn by_shift(
     let span =
         span.ok_or_else(|| InquiryError::member("since", "missing: shifts need a time span"))?;
     let spans = spans(shifts, zone, span)?;
+    if spans.is_empty() {
+        return Ok(Vec::new());
+    }
     let mut edges: Vec<i64> = spans.iter().flat_map(|it| [it.from.0, it.to.0]).collect();
     edges.sort_unstable();
     edges.dedup();
@@ -161,6 +164,7 @@ impl Archive {
                 parts.unsigned_abs(),
             ))
         };
+        assert!(edges.len() >= 2, "a shift without begin and end");
         let counted = filter
             .by_span(edges)
             .rows(&self.source, read)
@@ -184,6 +188,9 @@ impl Archive {
 
     /// Returns for each run its rig, and whether it was a retest.
     fn rigs_of(&self, runs: &[i64]) -> Read<HashMap<i64, (Option<String>, bool)>> {
+        if runs.is_empty() {
+            return Ok(HashMap::new());
+        }
         let dialect = self.source.dialect();
         let (among, values) = dialect.among("run.id", runs);
         let sql = format!(
@@ -191,10 +198,7 @@ impl Archive {
             dialect.rig()
         );
         let read = |row: &Row<'_>| Ok((row.get(0)?, (row.get(1)?, row.get(2)?)));
-        match runs {
-            [] => Ok(HashMap::new()),
-            _ => Ok(self.source.rows(&sql, &values, read)?.into_iter().collect()),
-        }
+        Ok(self.source.rows(&sql, &values, read)?.into_iter().collect())
     }
 }
 
