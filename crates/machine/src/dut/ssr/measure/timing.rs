@@ -26,7 +26,7 @@ pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
         | Position::Direct
         | Position::Line
         | Position::LinePulsed
-        | Position::Loop => conformity::to_load(state, plan, points),
+        | Position::Loop => conformity::to_load(state, plan, points, None),
     };
     state.position = Position::Pulsed;
     let mut queries = vec![points.off(Device::SmuIn), points.capture(plan)];

@@ -98,6 +98,8 @@ pub struct Part {
     pub sticks_loaded_v: f64,
     /// Inputs that the fixture never reports.
     pub dead: Vec<DigitalIn>,
+    /// Times to answer a step to or from a voltage near the threshold, when they differ from those of the pulse, s.
+    pub weak_s: Option<f64>,
     /// Voltage at the socket after the test.
     pub residual_v: f64,
     /// Program that fails, and program that delivers these numbers instead.
@@ -124,6 +126,7 @@ pub fn good() -> Part {
         sticks_at_v: f64::INFINITY,
         sticks_loaded_v: f64::INFINITY,
         dead: Vec::new(),
+        weak_s: None,
         residual_v: 0.5,
         failing: None,
         spoiled: None,
@@ -149,6 +152,11 @@ pub struct Bench {
     has_failed: bool,
     record_s: (f64, f64),
     pulse_s: f64,
+    /// Level at which the digitizer waits for an edge, and whether for a falling one.
+    waits: Option<(f64, bool)>,
+    /// Whether the output was on before the recorded edge, and whether it is long after it.
+    answer: (bool, bool),
+    control_v: f64,
 }
 
 impl Bench {
@@ -171,6 +179,9 @@ impl Bench {
             has_failed: false,
             record_s: (0.0, 0.0),
             pulse_s: 0.0,
+            waits: None,
+            answer: (false, false),
+            control_v: 0.0,
         }
     }
 
@@ -384,15 +395,21 @@ impl Bench {
                 self.pulse_s = given("width_s");
                 Vec::new()
             }
-            (Device::Digitizer, "capture") => {
+            (Device::Digitizer, "capture" | "capture_falling") => {
                 self.record_s = (10.0 * given("s_per_div"), given("points"));
+                self.waits = Some((given("level_v"), query.program == "capture_falling"));
                 Vec::new()
             }
             (Device::PulseSource, "start") => {
                 assert!(self.on.contains(&DigitalOut::DriveSelect));
+                self.waits = None;
                 Vec::new()
             }
-            (Device::Digitizer, "complete") | (Device::PulseSource, "off") => Vec::new(),
+            (Device::Digitizer, "complete") => {
+                assert!(self.waits.is_none(), "the digitizer still waits");
+                Vec::new()
+            }
+            (Device::PulseSource, "off") => Vec::new(),
             (Device::Digitizer, "waveform") => {
                 return Delivered {
                     numbers: Vec::new(),
@@ -421,6 +438,18 @@ impl Bench {
     }
 
     fn control(&mut self, volts: f64) {
+        let (before_v, was_lit) = (std::mem::replace(&mut self.control_v, volts), self.is_lit);
+        self.switches(volts);
+        let crosses = |(level_v, falls): (f64, bool)| match falls {
+            true => before_v >= level_v && volts < level_v,
+            false => before_v < level_v && volts >= level_v,
+        };
+        if self.waits.is_some_and(crosses) {
+            (self.waits, self.answer) = (None, (was_lit, self.is_lit));
+        }
+    }
+
+    fn switches(&mut self, volts: f64) {
         if volts >= self.part.turn_on_v {
             self.is_lit = true;
             let is_loaded = self.on.contains(&DigitalOut::SmuLoad);
@@ -452,7 +481,16 @@ impl Bench {
         let (part, edge_s) = (&self.part, 20e-6);
         let at = |index: usize| start_s + (index as f64 + 0.3) * step_s;
         let pulse = |at_s: f64| f64::from(u8::from((0.0..self.pulse_s).contains(&at_s)));
+        let answered = |at_s: f64| {
+            let (before, after) = self.answer;
+            let delay_s = if after { part.on_s } else { part.off_s };
+            let now = if at_s < part.weak_s.unwrap_or(delay_s) { before } else { after };
+            f64::from(u8::from(now))
+        };
         let load = |at_s: f64| {
+            if !self.on.contains(&DigitalOut::DriveSelect) {
+                return answered(at_s);
+            }
             let on = (at_s - part.on_s) / edge_s + 0.9;
             let off = 0.1 - (at_s - self.pulse_s - part.off_s) / edge_s;
             on.clamp(0.0, 1.0).min(off.clamp(0.0, 1.0))
