@@ -16,10 +16,7 @@ const AT_ONCE: usize = 2;
 /// Folders of stories, each with the options that choose rig and recipe.
 const FOLDERS: [(&str, &str); 3] = [
     ("", ""),
-    (
-        "ssr-dc",
-        "--config config/rigs/ssr --recipe ssr-dc-60v-3a",
-    ),
+    ("ssr-dc", "--config config/rigs/ssr --recipe ssr-dc-60v-3a"),
     (
         "ssr-ac",
         "--config config/rigs/ssr --recipe ssr-ac-240v-5a-zc",
@@ -29,7 +26,8 @@ const FOLDERS: [(&str, &str); 3] = [
 /// Returns every script with the options of its folder.
 fn scripts() -> Vec<(PathBuf, &'static str)> {
     let own = FOLDERS.into_iter();
-    let own = own.flat_map(|(name, options)| scripts_in(name).into_iter().map(move |it| (it, options)));
+    let own =
+        own.flat_map(|(name, options)| scripts_in(name).into_iter().map(move |it| (it, options)));
     own.collect()
 }
 

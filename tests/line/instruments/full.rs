@@ -41,7 +41,12 @@ fn main() -> ExitCode {
 fn together(seed: u64, queries: u64) -> Vec<(String, Vec<Weather>)> {
     let faults = every_fault(TOGETHER, STORM_S);
     let share = queries / WAYS.len() as u64;
-    let of = |way| (format!("all faults, {way:?}"), storms(way, seed, &faults, share));
+    let of = |way| {
+        (
+            format!("all faults, {way:?}"),
+            storms(way, seed, &faults, share),
+        )
+    };
     WAYS.map(of).to_vec()
 }
 

@@ -140,10 +140,15 @@ pub fn kills(count: u64) -> anyhow::Result<Kills> {
     let calm = bench.live("calm", None)?;
     let ends = calm.moves.first().zip(calm.moves.last());
     let (first, last) = ends.context("a lot that closes no contactor")?;
-    ensure!(calm.closed_at(u64::MAX).is_empty(), "a lot leaves a contactor closed");
+    ensure!(
+        calm.closed_at(u64::MAX).is_empty(),
+        "a lot leaves a contactor closed"
+    );
     let from_us = first.t_us.saturating_sub(MARGIN_US);
     let length_us = last.t_us + MARGIN_US - from_us;
-    let instants: Vec<u64> = (0..count).map(|it| from_us + length_us * it / count).collect();
+    let instants: Vec<u64> = (0..count)
+        .map(|it| from_us + length_us * it / count)
+        .collect();
     let courses = pool::map(&instants, pool::cores(), |after_us| {
         bench.live(&after_us.to_string(), Some(*after_us))
     })?;
@@ -172,9 +177,18 @@ pub fn figures(count: u64) -> anyhow::Result<Vec<Figure>> {
     let worst_ms = found.open_us.iter().max().map(|us| *us as f64 / 1e3);
     let closed = found.open_us.len() as u64;
     Ok(vec![
-        Figure::new("kills with a closed contactor, until it is open", closed, worst_ms, "ms")
-            .bar(Bar::AtMost(found.limit_us as f64 / 1e3)),
-        Figure::none("kills after which a contactor stayed closed", count, found.closed),
+        Figure::new(
+            "kills with a closed contactor, until it is open",
+            closed,
+            worst_ms,
+            "ms",
+        )
+        .bar(Bar::AtMost(found.limit_us as f64 / 1e3)),
+        Figure::none(
+            "kills after which a contactor stayed closed",
+            count,
+            found.closed,
+        ),
         Figure::none("lives that ended before their kill", count, found.ended),
     ])
 }

@@ -15,8 +15,9 @@ const REFERENCE: f64 = 0.001;
 const DELAY_S: f64 = 5e-6;
 /// Delay that remains after a reference has corrected it, half width, s.
 const DELAY_LEFT_S: f64 = 2e-6;
-/// Error of a gain after correction by a reference that was measured at another scale, half width, as a share.
-const GAIN_LEFT: f64 = 0.002;
+/// Error of a gain after correction by a reference that was measured at another scale, as a share: either scale adds 0.1 %
+/// (half width) of its own, so that the difference has the uncertainty of this half width.
+const GAIN_LEFT: f64 = 0.001 * SQRT_2;
 /// Difference between the fitted line voltage and the true curve (higher harmonics), half width, as a share of the
 /// value.
 const CURVE: f64 = 0.005;

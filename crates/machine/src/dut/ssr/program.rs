@@ -20,7 +20,7 @@ const HALF_SCREEN: f64 = 3.5;
 /// Horizontal divisions of a record.
 const DIVISIONS: f64 = 10.0;
 /// Share of a record before the trigger.
-const BEFORE: f64 = 0.1;
+pub const BEFORE: f64 = 0.1;
 /// Length of the record of an answer over the time within which the output must answer, and its samples.
 pub const ANSWER: f64 = 2.0;
 const ANSWER_POINTS: f64 = 1e3;
@@ -222,7 +222,11 @@ impl Points {
 
     /// Arms the digitizer with the scales of all channels; the record begins [`ac_plan::BEFORE`] before the rising edge.
     pub fn capture_all(&self, plan: &Plan, scales: &Scales) -> Query {
-        self.capture_step(plan, scales, (0.0, plan.turn_on_v.unwrap_or(plan.control_v)))
+        self.capture_step(
+            plan,
+            scales,
+            (0.0, plan.turn_on_v.unwrap_or(plan.control_v)),
+        )
     }
 
     /// Arms the digitizer as [`Self::capture_all`] does, around the step of the control voltage from one level to the

@@ -51,11 +51,20 @@ fn blocks(ampere: f64, plan: &Plan, dc: &DcPlan) -> bool {
     ampere.abs() <= dc.blocked_a + error_a
 }
 
+/// Returns the share of the load voltage that the record of the digitizer shows before the step.
+fn load_before(given: &Given) -> Result<f64, NotDelivered> {
+    load_between(given, (f64::NEG_INFINITY, 0.0))
+}
+
 /// Returns the share of the load voltage that the record of the digitizer shows at the end of a time limit.
 fn load_at(given: &Given, limit_s: f64) -> Result<f64, NotDelivered> {
+    load_between(given, (limit_s, (1.0 + AT) * limit_s))
+}
+
+fn load_between(given: &Given, (from_s, to_s): (f64, f64)) -> Result<f64, NotDelivered> {
     let [output] = given.waveforms()?;
     let index = |at_s: f64| ((at_s - output.start_s) / output.step_s).ceil().max(0.0) as usize;
-    let at = index(limit_s)..index((1.0 + AT) * limit_s) + 1;
+    let at = index(from_s)..index(to_s);
     let samples = output.volts.get(at).unwrap_or_default();
     let sum: f64 = samples.iter().map(|it| f64::from(*it)).sum();
     let volts = sum / samples.len() as f64;
@@ -122,7 +131,7 @@ pub fn block_acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
         .map_or(0.0, |limit_v| limit_v + plan.guard_v);
     let capture = points.capture_answer((plan.control_v, level_v), plan.off_s);
     let mut acts = to_load(state, plan, points, Some(capture));
-    acts.extend(read(points, plan.on_s));
+    acts.push(Act::Wait(Span::seconds(plan.on_s)));
     acts.extend(answer(points, level_v, plan.off_s));
     acts
 }
@@ -134,9 +143,9 @@ pub fn conclude_blocks(
     dc: &DcPlan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    let [on_a, off_a] = given.singles(Device::SmuOut)?;
+    let [off_a] = given.singles(Device::SmuOut)?;
     let is_in_time = load_at(given, plan.off_s)? <= OFF;
-    if !is_on(on_a) {
+    if load_before(given)? < ON {
         state.record.stop(Finding::NeverOn);
     } else if is_in_time && blocks(off_a, plan, dc) {
         let proven = (Parameter::TurnOffVoltage, Judgement::Pass);

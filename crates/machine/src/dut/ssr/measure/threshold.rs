@@ -134,12 +134,7 @@ pub fn conclude(
         Direction::Rising => is_on(ampere),
         Direction::Falling => !is_off(ampere),
     };
-    Ok(narrowed(
-        state,
-        (search, is_on),
-        (direction, again),
-        plan,
-    ))
+    Ok(narrowed(state, (search, is_on), (direction, again), plan))
 }
 
 /// Narrows the interval of a search, depending on whether the output conducted; `again` is the stage of the next step.

@@ -484,7 +484,11 @@ impl Bench {
         let answered = |at_s: f64| {
             let (before, after) = self.answer;
             let delay_s = if after { part.on_s } else { part.off_s };
-            let now = if at_s < part.weak_s.unwrap_or(delay_s) { before } else { after };
+            let now = if at_s < part.weak_s.unwrap_or(delay_s) {
+                before
+            } else {
+                after
+            };
             f64::from(u8::from(now))
         };
         let load = |at_s: f64| {

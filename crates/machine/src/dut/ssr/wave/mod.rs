@@ -22,7 +22,9 @@ use crate::instrument::query::Waveform;
 
 /// Returns the samples of a record from a time on.
 pub fn tail(waveform: &Waveform, from_s: f64) -> Waveform {
-    let first = ((from_s - waveform.start_s) / waveform.step_s).ceil().max(0.0);
+    let first = ((from_s - waveform.start_s) / waveform.step_s)
+        .ceil()
+        .max(0.0);
     let first = (first as usize).min(waveform.volts.len());
     Waveform {
         start_s: waveform.start_s + first as f64 * waveform.step_s,

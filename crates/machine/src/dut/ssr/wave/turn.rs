@@ -58,14 +58,18 @@ pub fn jump(
     let behind = samples(channel, BEHIND_S).max(FEWEST_BEHIND);
     let begins = from.saturating_sub(before);
     let ends = (last + behind).min(channel.len());
-    let volts: Vec<f64> = (begins..ends).map(value).collect();
-    let curve = |it: usize| mains.at(channel.time(begins + it));
-    let shifts: Vec<f64> = volts
+    let at = |it: usize| (value(it), mains.at(channel.time(it)));
+    let seen: Vec<(f64, f64)> = (begins..ends).map(at).collect();
+    let shifts: Vec<f64> = seen.iter().map(|(volts, line)| volts - line).collect();
+    // The drop has the sign of the mains.
+    let drops: Vec<f64> = seen
         .iter()
-        .enumerate()
-        .map(|(it, volts)| volts - curve(it))
+        .map(|(volts, line)| volts * line.signum())
         .collect();
-    let squares = |split: &usize| Level::of(&shifts[..*split]).squares + Level::of(&volts[*split..]).squares;
+    let squares = |split: &usize| {
+        let (shift, drop) = (Level::of(&shifts[..*split]), Level::of(&drops[*split..]));
+        shift.squares + drop.squares
+    };
     let splits = (from.max(begins + 2)..=last).map(|it| it - begins);
     let split = splits.min_by(|one, other| squares(one).total_cmp(&squares(other)))?;
     let shift = Level::of(&shifts[split.saturating_sub(before)..split]);

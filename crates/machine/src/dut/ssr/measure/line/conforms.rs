@@ -18,8 +18,8 @@ use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
 use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
-use crate::dut::ssr::wave::{Channel, tail};
 use crate::dut::ssr::wave::pulses::Output;
+use crate::dut::ssr::wave::{Channel, tail};
 use crate::gauge::{Judgement, Side};
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
@@ -122,7 +122,11 @@ pub fn conclude_blocks(
         return Ok(Next::Planned);
     }
     let of = Parameter::TurnOffVoltage;
-    let from_s = if shift == Shift::Late { 0.0 } else { plan.off_s };
+    let from_s = if shift == Shift::Late {
+        0.0
+    } else {
+        plan.off_s
+    };
     match (blocks(ac, given, from_s)?, shift) {
         (true, Shift::Within) => {
             let proven = (of, Judgement::Pass);
@@ -227,11 +231,7 @@ pub fn conducting(ac: &AcPlan, given: &Given, from_s: f64) -> Result<Conducting,
     of_period(ac, [&divided, &clamped], from_s).ok_or(NotDelivered(Device::Digitizer))
 }
 
-fn of_period(
-    ac: &AcPlan,
-    [divided, clamped]: [&Waveform; 2],
-    from_s: f64,
-) -> Option<Conducting> {
+fn of_period(ac: &AcPlan, [divided, clamped]: [&Waveform; 2], from_s: f64) -> Option<Conducting> {
     let output = Output {
         divided: Channel::of(divided, DIVIDER, 0.0)?,
         clamped: Channel::of(clamped, 1.0, 0.0)?,

@@ -16,7 +16,8 @@ use crate::dut::ssr::references::References;
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::drop_line::{self, DropLine};
 use crate::dut::ssr::wave::mains::Mains;
-use crate::dut::ssr::wave::{split, warming};
+use crate::dut::ssr::wave::split;
+use crate::dut::ssr::wave::warming::{self, Course};
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
 use std::f64::consts::SQRT_2;
@@ -24,7 +25,8 @@ use units::{Span, Unit};
 
 /// Least share of the peak current at which a sample counts for the fit of the drop.
 const LEAST: f64 = 0.3;
-/// Time after the control edge at which the drift of the drop begins, s; the next number is the time at which it ends.
+/// Time after the begin of the current at which the drift of the drop begins, s; the next number is the time at which it
+/// ends.
 const EARLY_S: f64 = 0.01;
 const LATE_S: f64 = 0.2;
 /// Share of its range up to which the channel of the drop follows the output.
@@ -157,15 +159,13 @@ impl<'a> Drops<'a> {
         let whole = self.whole()?;
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
         let period_s = 1.0 / self.current.hz;
-        let around = |middle_s: f64| (middle_s - period_s / 2.0, middle_s + period_s / 2.0);
-        // One half of the first period is cold. The period after it is the earliest from which the drift may count.
-        let early = self.peak_v((EARLY_S, EARLY_S + period_s))?;
-        let late = self.peak_v(around(LATE_S))?;
+        let (peak, rms) = (self.course(Self::peak_v)?, self.course(Self::rms_v)?);
+        let drift_v = peak.at(LATE_S / period_s) - peak.at(EARLY_S / period_s);
         let charges = self.charges(whole);
         Some(OnState {
-            peak_v: self.cold_v(Self::peak_v)?,
-            rms_v: self.cold_v(Self::rms_v)?,
-            drift_v: late - early,
+            peak_v: peak.at(0.0),
+            rms_v: rms.at(0.0),
+            drift_v,
             offset_v: self.mean_v(whole),
             distortion_v: self.distortion_v(whole, most_v)?,
             unequal: (charges.0 - charges.1).abs() / (charges.0 + charges.1),
@@ -221,17 +221,28 @@ impl<'a> Drops<'a> {
         }
     }
 
-    /// Returns values of the cold part: what the periods of the record show, carried back to the begin of the current.
-    /// `of` gives the value of the periods between two times.
-    fn cold_v(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<f64> {
+    /// Returns the zero of the current with which the output begins to conduct, s: after the control edge a zero-cross
+    /// part waits up to half a period, in which no current has warmed it.
+    fn begins_s(&self) -> Option<f64> {
+        let least_a = LEAST * self.current.amplitude();
+        let flows = (0..self.ampere.len()).find(|it| self.ampere.at(*it).abs() >= least_a)?;
+        Some(
+            self.current
+                .zero_after(self.ampere.time(flows) - self.current.half_s()),
+        )
+    }
+
+    /// Returns the course of a value from the begin of the current on; `of` gives it for the time between two instants.
+    fn course(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<Course> {
         let period_s = 1.0 / self.current.hz;
+        let begins_s = self.begins_s()?;
         let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
-        let count = (last_s / period_s).floor() as usize;
+        let count = ((last_s - begins_s) / period_s).floor().max(0.0) as usize;
         let each = (0..count).map(|it| {
-            let from_s = it as f64 * period_s;
+            let from_s = begins_s + it as f64 * period_s;
             of(self, (from_s, from_s + period_s))
         });
-        warming::begin(&each.collect::<Option<Vec<f64>>>()?)
+        warming::course(&each.collect::<Option<Vec<f64>>>()?)
     }
 }
 
