@@ -16,8 +16,7 @@ use crate::dut::ssr::references::References;
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::drop_line::{self, DropLine};
 use crate::dut::ssr::wave::mains::Mains;
-use crate::dut::ssr::wave::split;
-use crate::dut::ssr::wave::warming::{self, Course};
+use crate::dut::ssr::wave::{split, warming};
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
 use std::f64::consts::SQRT_2;
@@ -25,10 +24,8 @@ use units::{Span, Unit};
 
 /// Least share of the peak current at which a sample counts for the fit of the drop.
 const LEAST: f64 = 0.3;
-/// Time after the begin of the current at which the drift of the drop begins, s; the next number is the time at which it
-/// ends.
-const EARLY_S: f64 = 0.01;
-const LATE_S: f64 = 0.2;
+/// Periods at the end of the record whose mean drop ends the drift.
+pub const LATE: usize = 2;
 /// Share of its range up to which the channel of the drop follows the output.
 const FOLLOWED: f64 = 0.93;
 /// Share of the peak of the current that both polarities reach at least in a whole wave.
@@ -158,14 +155,13 @@ impl<'a> Drops<'a> {
     pub fn read(&self, most_v: f64) -> Option<OnState> {
         let whole = self.whole()?;
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
-        let period_s = 1.0 / self.current.hz;
-        let (peak, rms) = (self.course(Self::peak_v)?, self.course(Self::rms_v)?);
-        let drift_v = peak.at(LATE_S / period_s) - peak.at(EARLY_S / period_s);
+        let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
+        let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
         let charges = self.charges(whole);
         Some(OnState {
             peak_v: peak.at(0.0),
             rms_v: rms.at(0.0),
-            drift_v,
+            drift_v: drift_v(&peaks)?,
             offset_v: self.mean_v(whole),
             distortion_v: self.distortion_v(whole, most_v)?,
             unequal: (charges.0 - charges.1).abs() / (charges.0 + charges.1),
@@ -221,19 +217,19 @@ impl<'a> Drops<'a> {
         }
     }
 
-    /// Returns the zero of the current with which the output begins to conduct, s: after the control edge a zero-cross
-    /// part waits up to half a period, in which no current has warmed it.
+    /// Returns the zero of the current with which the output begins to conduct half cycles, s: after the control edge a
+    /// zero-cross part waits up to half a period, in which no current has warmed it. Less than half of a half cycle at
+    /// the beginning, such as that of a part that fires right before a zero, does not count.
     fn begins_s(&self) -> Option<f64> {
         let least_a = LEAST * self.current.amplitude();
         let flows = (0..self.ampere.len()).find(|it| self.ampere.at(*it).abs() >= least_a)?;
         Some(
-            self.current
-                .zero_after(self.ampere.time(flows) - self.current.half_s()),
+            self.current.zero_after(self.ampere.time(flows) - self.current.half_s() / 2.0),
         )
     }
 
-    /// Returns the course of a value from the begin of the current on; `of` gives it for the time between two instants.
-    fn course(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<Course> {
+    /// Returns a value in each period from the begin of the current on; `of` gives it for the time between two instants.
+    fn periods(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<Vec<f64>> {
         let period_s = 1.0 / self.current.hz;
         let begins_s = self.begins_s()?;
         let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
@@ -242,8 +238,15 @@ impl<'a> Drops<'a> {
             let from_s = begins_s + it as f64 * period_s;
             of(self, (from_s, from_s + period_s))
         });
-        warming::course(&each.collect::<Option<Vec<f64>>>()?)
+        each.collect()
     }
+}
+
+/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V, from the drops of its periods:
+/// the first one, whose mean an output has after some 10 ms whatever its time constant, and the last two, around 200 ms.
+fn drift_v(peaks: &[f64]) -> Option<f64> {
+    let (first, last) = (peaks.first()?, peaks.last_chunk::<LATE>()?);
+    Some(last.iter().sum::<f64>() / LATE as f64 - first)
 }
 
 /// Concludes the loop.
