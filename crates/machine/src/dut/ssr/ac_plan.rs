@@ -190,7 +190,7 @@ impl AcPlan {
         self.line(self.after(on_s, CONDUCTS_PERIODS), 1e3)
     }
 
-    /// Returns the length of a record that has so many periods from a time after its trigger on, s.
+    /// Returns the length of a record that has this number of periods from a time after its trigger on, s.
     fn after(&self, wait_s: f64, periods: f64) -> f64 {
         (wait_s + 2.0 * periods * self.half_s()) / (1.0 - BEFORE)
     }

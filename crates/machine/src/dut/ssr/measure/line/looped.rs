@@ -224,7 +224,8 @@ impl<'a> Drops<'a> {
         let least_a = LEAST * self.current.amplitude();
         let flows = (0..self.ampere.len()).find(|it| self.ampere.at(*it).abs() >= least_a)?;
         Some(
-            self.current.zero_after(self.ampere.time(flows) - self.current.half_s() / 2.0),
+            self.current
+                .zero_after(self.ampere.time(flows) - self.current.half_s() / 2.0),
         )
     }
 
