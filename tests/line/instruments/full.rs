@@ -47,7 +47,7 @@ fn together(seed: u64, queries: u64) -> Vec<(String, Vec<Weather>)> {
             storms(way, seed, &faults, share),
         )
     };
-    WAYS.map(of).to_vec()
+    WAYS.map(of).into()
 }
 
 /// Returns the storms of each fault alone.

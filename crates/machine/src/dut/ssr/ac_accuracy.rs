@@ -27,7 +27,7 @@ const CURVE: f64 = 0.005;
 const LINEARITY: f64 = 2.5e-4;
 
 /// Change of the mains between the two ends of a drift, half width, as a share of the drop.
-const MAINS: f64 = 0.0006;
+const MAINS: f64 = 0.0007;
 /// Difference between the mean drop of the first period and that after 10 ms, half width, as a share of the drift: for time
 /// constants of the junction from 10 to 40 ms.
 const FIRST: f64 = 0.1;
