@@ -1,5 +1,5 @@
 //! Journal of the outputs: every change of a digital output, expiry of a host watchdog, fault that strikes, coil that
-//! is overdriven, and reply that this computer made late.
+//! is overdriven, move of the main contacts of a contactor, and reply that this computer made late.
 //!
 //! The journal records at the terminals, between modules and world, so that it holds the signals that the actuators
 //! get. It is off until [`JournaledWorld::listen`].
@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::rig::WorldModel;
 use crate::scpi::circuit::Circuit;
 use crate::terminal::Plant;
-use crate::truth::{Overdrive, WorldRecord};
+use crate::truth::{ContactMove, Overdrive, WorldRecord};
 
 /// One entry of the journal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -56,6 +56,8 @@ pub enum Entry {
     },
     /// A coil is driven while the supply is in a range above the commanded one.
     CoilOverdriven(Overdrive),
+    /// The main contacts of a contactor have moved.
+    Contact(ContactMove),
 }
 
 /// A world with a journal of its output terminals.
@@ -67,6 +69,8 @@ pub(crate) struct JournaledWorld {
     carries: BTreeMap<String, f64>,
     /// Number of overdrives in the journal.
     overdrives: usize,
+    /// Number of moves of contacts in the journal.
+    moves: usize,
     late: LateReplies,
 }
 
@@ -88,6 +92,7 @@ impl JournaledWorld {
             last_request_us: 0,
             carries: BTreeMap::new(),
             overdrives: 0,
+            moves: 0,
             late: LateReplies::default(),
         }
     }
@@ -150,13 +155,18 @@ impl JournaledWorld {
         }
     }
 
-    /// Records the overdrives since the last call.
-    fn record_overdrives(&mut self) {
+    /// Records the overdrives and moves of contacts since the last call.
+    fn record_moves(&mut self) {
         let all = self.scene.overdrives();
         for overdrive in &all[self.overdrives..] {
             self.send(Entry::CoilOverdriven(*overdrive));
         }
         self.overdrives = all.len();
+        let all = self.scene.contact_moves();
+        for moved in &all[self.moves..] {
+            self.send(Entry::Contact(*moved));
+        }
+        self.moves = all.len();
     }
 
     fn carry(&mut self, module: &str, value: f64) -> bool {
@@ -174,7 +184,7 @@ impl Plant for JournaledWorld {
     fn advance(&mut self, t_us: u64) {
         self.now_us = t_us;
         self.scene.advance(t_us);
-        self.record_overdrives();
+        self.record_moves();
     }
 
     fn analog_in(&mut self, module: &str, channel: u8) -> f64 {
@@ -187,7 +197,7 @@ impl Plant for JournaledWorld {
             self.carry(module, volts);
         }
         self.scene.analog_out(module, channel, volts);
-        self.record_overdrives();
+        self.record_moves();
     }
 
     fn digital_in(&mut self, module: &str) -> u16 {
@@ -203,7 +213,7 @@ impl Plant for JournaledWorld {
             });
         }
         self.scene.digital_out(module, bits);
-        self.record_overdrives();
+        self.record_moves();
     }
 
     fn edges(&mut self, module: &str, channel: u8) -> u64 {

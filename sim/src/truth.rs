@@ -26,6 +26,11 @@ pub trait WorldRecord {
         &[]
     }
 
+    /// Returns every move of the main contacts of a contactor, in order of time.
+    fn contact_moves(&self) -> &[ContactMove] {
+        &[]
+    }
+
     /// Removes and returns the texts that the code reader has sent so far.
     fn take_codes(&mut self) -> Vec<String> {
         Vec::new()
@@ -122,6 +127,17 @@ pub struct Overdrive {
     pub range: u8,
     /// Voltage of the supply without load, V.
     pub supply_v: f64,
+}
+
+/// Move of the main contacts of a contactor between the AC source and the socket.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ContactMove {
+    /// Rig time, microseconds.
+    pub t_us: u64,
+    /// Name of the output that drives the coil.
+    pub contactor: &'static str,
+    /// True when they have closed, false when they have opened.
+    pub closed: bool,
 }
 
 impl fmt::Display for Overdrive {

@@ -198,7 +198,7 @@ fn solid_state(args: &StudyArgs) -> anyhow::Result<Exit> {
         bail!("study ssr: --parts and --world belong to studies that run lots");
     }
     let parts = args.seeds.unwrap_or(studies::SSR_PARTS);
-    published(&studies::ssr(parts), args)
+    published(&studies::ssr(parts)?, args)
 }
 
 fn plans(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {

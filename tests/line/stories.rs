@@ -1,4 +1,5 @@
-//! Stories of troubles: a script in `stories/NAME.txt`, the expected course in `NAME.told`.
+//! Stories of troubles: a script in `stories/NAME.txt`, the expected course in `NAME.told`. Those of another rig lie in a
+//! folder of their own.
 //!
 //! The course must match byte for byte. In every story nothing touches, every body lies where its row says, and every judged
 //! part has its row. `RELAYRIG_RENEW=1` in the environment rewrites the expected courses: read the difference before
@@ -12,9 +13,27 @@ use std::sync::Mutex;
 /// Stories that run at the same time, each in a process of its own.
 const AT_ONCE: usize = 2;
 
-fn scripts() -> Vec<PathBuf> {
+/// Folders of stories, each with the options that choose rig and recipe.
+const FOLDERS: [(&str, &str); 3] = [
+    ("", ""),
+    ("ssr-dc", "--config config/rigs/ssr --recipe ssr-dc-60v-3a"),
+    (
+        "ssr-ac",
+        "--config config/rigs/ssr --recipe ssr-ac-240v-5a-zc",
+    ),
+];
+
+/// Returns every script with the options of its folder.
+fn scripts() -> Vec<(PathBuf, &'static str)> {
+    let own = FOLDERS.into_iter();
+    let own =
+        own.flat_map(|(name, options)| scripts_in(name).into_iter().map(move |it| (it, options)));
+    own.collect()
+}
+
+fn scripts_in(name: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/line/stories");
-    let entries = fs::read_dir(folder).unwrap();
+    let entries = fs::read_dir(folder.join(name)).unwrap();
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
     files.retain(|file| file.extension().is_some_and(|ending| ending == "txt"));
     files.sort();
@@ -28,8 +47,8 @@ fn every_story_takes_its_expected_course() {
     std::thread::scope(|scope| {
         for _ in 0..AT_ONCE {
             scope.spawn(|| {
-                while let Some(script) = { left.lock().unwrap().pop() } {
-                    broken.lock().unwrap().extend(differences(&script));
+                while let Some((script, options)) = { left.lock().unwrap().pop() } {
+                    broken.lock().unwrap().extend(differences(&script, options));
                 }
             });
         }
@@ -39,11 +58,13 @@ fn every_story_takes_its_expected_course() {
 }
 
 /// Plays a script and returns every difference from the expected course.
-fn differences(script: &Path) -> Vec<String> {
+fn differences(script: &Path, options: &str) -> Vec<String> {
+    let folder = script.parent().and_then(Path::file_name).unwrap();
     let name = script.file_stem().unwrap().to_string_lossy();
+    let name = format!("{}-{name}", folder.to_string_lossy());
     let workshop = Workshop::new(&format!("story-{name}"));
     let said = workshop.run(&format!(
-        "--db relayrig.db story {} --truth t.jsonl",
+        "--db relayrig.db story {} {options} --truth t.jsonl",
         script.display()
     ));
     let file = script.with_extension("told");

@@ -13,7 +13,7 @@ use super::table::{WorldTable, present};
 use super::wiring::Wiring;
 use crate::config::{ConfigError, Files, RigFile};
 use crate::scpi::circuit::{Drive, Reading, Terminal};
-use crate::truth::Overdrive;
+use crate::truth::{ContactMove, Overdrive};
 
 /// State of pin block and door.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -171,6 +171,14 @@ impl Fixture {
         match self {
             Self::Relay(board) => board.overdrives(),
             Self::Ssr(_) => &[],
+        }
+    }
+
+    /// Returns every move of the main contacts of a contactor so far, in order of time.
+    pub fn contact_moves(&self) -> &[ContactMove] {
+        match self {
+            Self::Relay(_) => &[],
+            Self::Ssr(board) => board.contact_moves(),
         }
     }
 

@@ -5,7 +5,7 @@ use super::fault::{Fault, FaultKind};
 use super::magazine::Magazine;
 use crate::config::read_world;
 use crate::error::SimError;
-use crate::truth::{BodyTruth, Overdrive, WorldRecord};
+use crate::truth::{BodyTruth, ContactMove, Overdrive, WorldRecord};
 use crate::world::WorldOptions;
 
 impl WorldRecord for World {
@@ -43,6 +43,10 @@ impl WorldRecord for World {
 
     fn overdrives(&self) -> &[Overdrive] {
         self.fixture.overdrives()
+    }
+
+    fn contact_moves(&self) -> &[ContactMove] {
+        self.fixture.contact_moves()
     }
 
     fn inject(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {

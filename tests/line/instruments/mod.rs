@@ -6,10 +6,12 @@ mod commands;
 mod lot;
 mod storm;
 
-use storm::{WAYS, Way, every_fault, storm};
+use storm::{WAYS, Way, each_fault, every_fault, storm};
 
 /// Rig time of a storm of all faults; `cargo bench --bench link_storm` sends a hundred thousand queries.
 const TOGETHER_S: f64 = 100.0;
+/// Rig time of a storm of one fault.
+const ALONE_S: f64 = 10.0;
 
 #[tokio::test(start_paused = true)]
 async fn no_reply_reaches_another_query_under_all_faults() {
@@ -70,6 +72,14 @@ async fn each_fault_has_its_name_and_leaves_nothing() {
         weather.failures.dedup();
         let first = weather.failures.iter().take(names.len().max(1));
         assert!(first.eq(names), "{faults:?}: {weather:#?}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn no_reply_reaches_another_query_under_one_fault() {
+    for (seed, (way, faults)) in (1..).zip(each_fault(0.03, ALONE_S)) {
+        let weather = storm(way, seed, &faults, ALONE_S).await;
+        assert!(weather.is_honest(), "{faults:?}, {way:?}: {weather:#?}");
     }
 }
 

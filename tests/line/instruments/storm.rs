@@ -124,6 +124,27 @@ pub fn every_fault(probability: f64, until_s: f64) -> Vec<String> {
     all.map(|it| format!("{it}@0..{until_s}")).collect()
 }
 
+/// Faults that strike only after a connection has ended.
+const AFTER_AN_END: [&str; 3] = ["half_kept", "port_busy", "wrong_identity"];
+
+/// Returns each fault alone at this probability until an instant of rig time, with the way on which it strikes; a fault
+/// that needs the end of a connection comes with one.
+pub fn each_fault(probability: f64, until_s: f64) -> Vec<(Way, Vec<String>)> {
+    let alone = every_fault(probability, until_s).into_iter();
+    let with_way = |fault: String| {
+        let name = fault.split('=').next().unwrap_or_default();
+        let way = match name {
+            _ if name.starts_with("block_") => Way::Blocks,
+            "address_changed" => Way::Adapter,
+            _ => Way::Network,
+        };
+        let ends = AFTER_AN_END.contains(&name);
+        let end = ends.then(|| format!("closed_before={probability}@0..{until_s}"));
+        (way, std::iter::once(fault).chain(end).collect())
+    };
+    alone.map(with_way).collect()
+}
+
 /// Sends programs under `faults`, which end at `until_s` of rig time, and some after them. Needs a current-thread runtime
 /// with a paused clock.
 pub async fn storm(way: Way, seed: u64, faults: &[String], until_s: f64) -> Weather {

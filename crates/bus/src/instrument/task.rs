@@ -49,22 +49,25 @@ pub struct ProgramAnswer {
 ///
 /// # Errors
 /// Fails when the output may still be on: the safe program fails twice, or does not end in time.
-pub async fn serve(
+pub fn serve(
     link: Link,
     pace: Pace,
     requests: mpsc::Receiver<ProgramRequest>,
     answers: mpsc::Sender<ProgramAnswer>,
     safe: Program,
-) -> Result<(), Failure> {
+) -> crate::Task<Result<(), Failure>> {
     let mut task = Task {
         link,
         may_be_on: false,
     };
-    task.run_all(pace, requests, answers).await;
-    match task.may_be_on {
-        true => task.make_safe(pace, &safe).await,
-        false => Ok(()),
-    }
+    // The type is erased here, so that this crate makes the code that polls it (see `crate::task`).
+    Box::pin(async move {
+        task.run_all(pace, requests, answers).await;
+        match task.may_be_on {
+            true => task.make_safe(pace, &safe).await,
+            false => Ok(()),
+        }
+    })
 }
 
 struct Task {

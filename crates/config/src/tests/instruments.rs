@@ -86,7 +86,7 @@ fn a_program_gets_its_arguments() {
             .program("wave", &[])
             .unwrap_err()
             .to_string()
-            .contains("arm, capture, capture_all, complete, force_trigger, state, waveform")
+            .contains("arm, capture, capture_all, capture_all_falling, capture_falling, complete,")
     );
 }
 

@@ -1,10 +1,11 @@
-//! Study `ssr`: seconds against error of the methods for solid-state relays.
+//! Study `ssr`: seconds against error of the methods for solid-state relays, and kills of a controller with the line on.
 //!
 //! The study joins the arithmetic of the controller with a model of the signals, so that only the error of the method
 //! remains: sampling, resolution and noise of the digitizer, the delay of the part near its threshold, the errors of the
 //! source where a row says so. `seconds` is rig time of the method: dwell and record, and for searches the commands of
 //! a step.
 
+mod kill;
 mod mains;
 mod scope;
 mod threshold;
@@ -18,23 +19,35 @@ use super::output::Report;
 /// Parts of each row without `--seeds`.
 pub const PARTS: u64 = 400;
 
-/// Makes the report from `parts` made-up parts for each row.
-pub fn study(parts: u64) -> Report {
+/// Kills of the controller.
+const KILLS: u64 = 200;
+
+/// Makes the report from `parts` made-up parts for each row, and from kills of the controller.
+///
+/// # Errors
+/// Fails when the rig that comes with the program does not load.
+pub fn study(parts: u64) -> anyhow::Result<Report> {
+    let mut groups = methods(parts);
+    let title = "turn-on voltage at the zero of the mains: rms error of one turn-on";
+    let chart = Chart::of(title, "V", vec![0.5], &groups[1]);
+    groups.push(kill::figures(KILLS)?);
+    let about = format!(
+        "{parts} made-up parts for each row, instruments without errors unless a row says so"
+    );
+    Ok(Report::new("ssr", about, groups, chart))
+}
+
+/// Returns the rows of each method.
+fn methods(parts: u64) -> Vec<Vec<Figure>> {
     let thresholds = threshold::methods(parts);
     let crossings = mains::zero_crossings(parts);
-    let title = "turn-on voltage at the zero of the mains: rms error of one turn-on";
-    let chart = Chart::of(title, "V", vec![0.5], &crossings);
-    let groups = vec![
+    vec![
         thresholds,
         crossings,
         mains::leakages(parts),
         mains::drops(parts),
         timing::edges(parts),
-    ];
-    let about = format!(
-        "{parts} made-up parts for each row, instruments without errors unless a row says so"
-    );
-    Report::new("ssr", about, groups, chart)
+    ]
 }
 
 /// Returns a row of error: root mean square, bias and greatest, and the seconds of the method.
@@ -70,9 +83,26 @@ mod tests {
             let row = rows.iter().find(|it| it.name.contains(name));
             row.and_then(|it| it.value).expect(name)
         };
-        assert!(of("100 kS/s, 12 bits") < of("50 kS/s, 12 bits"));
+        for bits in [8, 12] {
+            let rates =
+                [20, 50, 100, 250, 1000].map(|rate| of(&format!(", {rate} kS/s, {bits} bits")));
+            // Where the noise dominates, more samples give no more.
+            let is_finer = rates[..4].is_sorted_by(|one, other| one > other);
+            assert!(is_finer && rates[4] < rates[2], "{bits} bits: {rates:?}");
+        }
         // The half of a step over the root of three.
         assert!((of("100 kS/s, 12 bits") - 0.3).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_killed_controller_leaves_every_contactor_open_in_time() {
+        let found = kill::kills(24).expect("kills");
+        assert_eq!((found.closed, found.ended), (0, 0), "{found:?}");
+        assert!(found.open_us.len() >= 8, "{found:?}");
+        assert!(
+            found.open_us.iter().all(|it| *it <= found.limit_us),
+            "{found:?}"
+        );
     }
 
     #[test]
@@ -89,7 +119,7 @@ mod tests {
 
     #[test]
     fn every_row_has_a_value_and_its_seconds() {
-        for figure in study(20).figures() {
+        for figure in methods(20).into_iter().flatten() {
             assert!(figure.value.is_some(), "{}", figure.name);
             assert!(
                 figure

@@ -72,7 +72,8 @@ impl Watch {
                 Entry::Output { .. }
                 | Entry::Struck { .. }
                 | Entry::Late { .. }
-                | Entry::CoilOverdriven(_) => {}
+                | Entry::CoilOverdriven(_)
+                | Entry::Contact(_) => {}
             }
         }
         (states, expired)

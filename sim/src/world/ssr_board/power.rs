@@ -6,6 +6,7 @@ use super::alternating::Load;
 use super::contactor::{Contactor, Damage};
 use super::table;
 use crate::scpi::line::Unrest;
+use crate::truth::ContactMove;
 use crate::world::fault::Fault;
 use crate::world::signal::Out;
 use crate::world::specimen::Specimen;
@@ -72,6 +73,8 @@ pub struct Contactors {
     /// Mirror contacts of both: true while the main contacts are open.
     open: [bool; 2],
     troubles: Troubles,
+    /// Every move of main contacts so far.
+    moves: Vec<ContactMove>,
 }
 
 impl Contactors {
@@ -81,6 +84,7 @@ impl Contactors {
             each: [new(), new()],
             open: [true; 2],
             troubles: Troubles::default(),
+            moves: Vec::new(),
         }
     }
 
@@ -147,6 +151,13 @@ impl SsrBoard {
         if moved == [false; 2] {
             return;
         }
+        for place in [LINE, LOOP].into_iter().filter(|place| moved[*place]) {
+            self.contactors.moves.push(ContactMove {
+                t_us: now_us as u64,
+                contactor: OUTS[place].name(),
+                closed: self.contactors.each[place].is_closed(),
+            });
+        }
         self.contactors.show();
         if let Some(mut circuit) = self.alternating.take() {
             self.settle(
@@ -187,6 +198,11 @@ impl SsrBoard {
     pub(super) fn shunt_ohm(&self) -> f64 {
         let circuit = self.alternating.as_ref();
         circuit.map_or(self.table.line_shunt_ohm, |it| it.load().shunt_ohm)
+    }
+
+    /// Returns every move of the main contacts so far, in order of time.
+    pub fn contact_moves(&self) -> &[ContactMove] {
+        &self.contactors.moves
     }
 
     /// Gives a voltage at the socket to the detector.

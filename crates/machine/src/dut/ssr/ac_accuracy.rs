@@ -3,7 +3,7 @@
 
 use super::ac_plan::{AcPlan, CLAMP_V, SHUNT_ERROR};
 use super::measure::line::leakage::Leak;
-use super::measure::line::looped::OnState;
+use super::measure::line::looped::{LATE, OnState};
 use super::measure::line::train::Walk;
 use super::plan::Plan;
 use crate::gauge::Budget;
@@ -15,8 +15,9 @@ const REFERENCE: f64 = 0.001;
 const DELAY_S: f64 = 5e-6;
 /// Delay that remains after a reference has corrected it, half width, s.
 const DELAY_LEFT_S: f64 = 2e-6;
-/// Error of a gain after correction by a reference that was measured at another scale, half width, as a share.
-const GAIN_LEFT: f64 = 0.002;
+/// Error of a gain after correction by a reference that was measured at another scale, as a share: either scale adds 0.1 %
+/// (half width) of its own, so that the difference has the uncertainty of this half width.
+const GAIN_LEFT: f64 = 0.001 * SQRT_2;
 /// Difference between the fitted line voltage and the true curve (higher harmonics), half width, as a share of the
 /// value.
 const CURVE: f64 = 0.005;
@@ -26,10 +27,13 @@ const CURVE: f64 = 0.005;
 const LINEARITY: f64 = 2.5e-4;
 
 /// Change of the mains between the two ends of a drift, half width, as a share of the drop.
-const MAINS: f64 = 0.0012;
+const MAINS: f64 = 0.0007;
+/// Difference between the mean drop of the first period and that after 10 ms, half width, as a share of the drift: for time
+/// constants of the junction from 10 to 40 ms.
+const FIRST: f64 = 0.1;
 
-/// Share of the distortion by which the mains moves it, half width.
-const WAITS: f64 = 0.04;
+/// Share of the distortion by which the mains moves it, standard deviation.
+const WAITS: f64 = 0.024;
 
 /// Part of a leakage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,16 +83,29 @@ pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> 
 /// Returns the budget of a time from the pulse train, microseconds: the mean of `count` instants, each known to one
 /// interval of the samples.
 pub fn line_time(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Budget {
-    let answers = walk.answers.last().map_or(0.0, |it| it.pulse.end_s);
-    let base_us = (plan.time.gain(answers) + plan.time.offset) * 1e6;
     let slope = walk
         .mains
         .slope(walk.answers.first().map_or(0.0, |it| it.zero_s));
     let zero_us = walk.mains.residual / 10.0 / slope.abs() * 1e6;
     Budget::default()
-        .with_bounds("time base", base_us + plan.time.gain(took_us))
+        .with_bounds("time base", base_us(plan, walk) + plan.time.gain(took_us))
         .with_random_bounds("sample interval", sampled(walk.step_s, count) * 1e6)
         .with_random("zero of the mains", zero_us)
+}
+
+/// Returns the budget of a time that counts from the trigger, microseconds: all edges share the interval of the samples in
+/// which the trigger lies.
+pub fn from_trigger(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Budget {
+    Budget::default()
+        .with_bounds("time base", base_us(plan, walk) + plan.time.gain(took_us))
+        .with_random_bounds("sample interval", sampled(walk.step_s, count) * 1e6)
+        .with_random_bounds("trigger", walk.step_s / 2.0 * 1e6)
+}
+
+/// Returns the error of the base of time over the whole train, half width, microseconds.
+fn base_us(plan: &Plan, walk: &Walk) -> f64 {
+    let ends_s = walk.answers.last().map_or(0.0, |it| it.pulse.end_s);
+    (plan.time.gain(ends_s) + plan.time.offset) * 1e6
 }
 
 /// Returns the half width of the error of a jump that lies in the middle of two samples a `step` apart, as the mean of
@@ -166,20 +183,22 @@ pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
     Budget::default().with_bounds("offset", offset_v / mean_v * 100.0)
 }
 
-/// Returns the budget of the rise of the drop, mV. Offsets cancel. Either end comes from one period of the record, a
-/// tenth of its samples.
+/// Returns the budget of the rise of the drop, mV. Offsets cancel. It begins with one period of the record, a
+/// tenth of its samples, and ends with [`LATE`] of them.
 pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
     let gain_share = gain(ac, on.is_referenced);
+    let noise_v = (10.0 + 10.0 / LATE as f64).sqrt() * on.noise_v;
     Budget::default()
         .with_bounds("gain", gain_share * on.drift_v * 1e3)
-        .with_random("noise", SQRT_2 * 10f64.sqrt() * on.noise_v * 1e3)
+        .with_bounds("first period", FIRST * on.drift_v * 1e3)
+        .with_random("noise", noise_v * 1e3)
         .with_random_bounds("mains", MAINS * on.peak_v * 1e3)
 }
 
 /// Returns the budget of a distortion, mV, from that of a drop of the same size: the mains, whose harmonics and amplitude
 /// differ from the nominal ones, moves the instants at which the output waits.
 pub fn distortion(drop: &Budget, value_v: f64) -> Budget {
-    scaled(drop, 1e3).with_bounds("mains", WAITS * value_v * 1e3)
+    scaled(drop, 1e3).with("mains", WAITS * value_v * 1e3)
 }
 
 /// Returns a budget in another unit.

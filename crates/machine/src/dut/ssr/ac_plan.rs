@@ -40,10 +40,10 @@ const LEAST_SCALE_V: f64 = 0.5e-3;
 const LEAKAGE_PERIODS: f64 = 3.0;
 /// Samples of that record; more of them only take longer to read, since their noise is small against the other errors.
 const LEAKAGE_POINTS: f64 = 4e3;
-/// Periods in the record of a turn-off.
+/// Periods for which a record shows whether an output blocks.
 const BLOCKS_PERIODS: f64 = 1.5;
-/// Periods in the record of a turn-on: it must conduct in the last one.
-pub const CONDUCTS_PERIODS: f64 = 2.2;
+/// Periods for which a record shows whether an output conducts: one, with room for a line that is slow.
+const CONDUCTS_PERIODS: f64 = 1.05;
 /// Time of the conducting output in the loop, s, for the drift from 10 ms to 200 ms.
 pub const LOOP_S: f64 = 0.212;
 /// Half periods of the mains from the start of a pulse to the next, without the step of the phase; the next number is
@@ -177,17 +177,22 @@ impl AcPlan {
         }
     }
 
-    /// Returns the scales of a record that only shows whether the output blocks.
-    pub fn blocks(&self) -> Scales {
+    /// Returns the scales of a record that only shows whether the output blocks from `off_s` after its trigger on.
+    pub fn blocks(&self, off_s: f64) -> Scales {
         Scales {
             shunt_v: self.leakage_scale_v,
-            ..self.line(2.0 * BLOCKS_PERIODS * self.half_s(), 1e3)
+            ..self.line(self.after(off_s, BLOCKS_PERIODS), 1e3)
         }
     }
 
-    /// Returns the scales of a record of the turn-on.
-    pub fn conducts(&self) -> Scales {
-        self.line(2.0 * CONDUCTS_PERIODS * self.half_s(), 1e3)
+    /// Returns the scales of a record that shows whether the output conducts from `on_s` after its trigger on.
+    pub fn conducts(&self, on_s: f64) -> Scales {
+        self.line(self.after(on_s, CONDUCTS_PERIODS), 1e3)
+    }
+
+    /// Returns the length of a record that has this number of periods from a time after its trigger on, s.
+    fn after(&self, wait_s: f64, periods: f64) -> f64 {
+        (wait_s + 2.0 * periods * self.half_s()) / (1.0 - BEFORE)
     }
 
     /// Returns the scales of the record of a train.

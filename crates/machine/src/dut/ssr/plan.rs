@@ -90,9 +90,9 @@ pub struct Plan {
     pub turn_off_v: Option<f64>,
     /// Distance of an applied voltage from its limit, V: the expanded uncertainty of the source, or 0.
     pub guard_v: f64,
-    /// Time after which the output must conduct, s.
+    /// Time after the control edge within which the output must conduct, s.
     pub on_s: f64,
-    /// Time after which the output must block, s.
+    /// Time after the control edge within which the output must block, s.
     pub off_s: f64,
     /// Ranges at the control input.
     pub input: CurrentRange,
@@ -203,11 +203,17 @@ impl Plan {
         let output = match part.output {
             Output::Dc => OutputPlan::Dc(DcPlan::of(ssr, limits, &ranges)?),
             Output::AcZeroCross | Output::AcRandom => {
-                (on_s, off_s) = (on_s + 1.0 / part.mains_hz, off_s + 1.0 / part.mains_hz);
-                OutputPlan::Ac(AcPlan::of(ssr, limits, &ranges)?)
+                let ac = AcPlan::of(ssr, limits, &ranges)?;
+                // Both times of the recipe count from a zero, which comes at most half a period after the edge.
+                off_s += ac.half_s();
+                on_s += if ac.zero_cross { ac.half_s() } else { 0.0 };
+                OutputPlan::Ac(ac)
             }
         };
-        let hold = (on_s.max(off_s) / PERIOD_S).clamp(0.01, 10.0);
+        let hold = match &output {
+            OutputPlan::Dc(_) => (on_s.max(off_s) / PERIOD_S).clamp(0.01, 10.0),
+            OutputPlan::Ac(_) => 1.0,
+        };
         let input = ranges.currents(Device::SmuIn, part.control_v, input_a, hold)?;
         let is_bounded = |of: &Parameter| high(*of).is_some();
         let is_judged = |of: &Parameter| !limits.of(*of).is_open();

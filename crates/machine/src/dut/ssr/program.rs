@@ -20,7 +20,10 @@ const HALF_SCREEN: f64 = 3.5;
 /// Horizontal divisions of a record.
 const DIVISIONS: f64 = 10.0;
 /// Share of a record before the trigger.
-const BEFORE: f64 = 0.1;
+pub const BEFORE: f64 = 0.1;
+/// Length of the record of an answer over the time within which the output must answer, and its samples.
+pub const ANSWER: f64 = 2.0;
+const ANSWER_POINTS: f64 = 1e3;
 
 /// Returns the number of readings of the drop over time: one period of the mains each, the last two around 200 ms.
 pub fn drop_count() -> usize {
@@ -149,6 +152,31 @@ impl Points {
         self.query(Device::Digitizer, "capture", &arguments)
     }
 
+    /// Arms the digitizer for the step of the control voltage from one level to the other, after which the output must
+    /// have answered within `within_s`.
+    pub fn capture_answer(&self, (from_v, to_v): (f64, f64), within_s: f64) -> Query {
+        let program = match to_v > from_v {
+            true => "capture",
+            false => "capture_falling",
+        };
+        let record_s = ANSWER * within_s;
+        let arguments = [
+            ("control_v_per_div", from_v.max(to_v) / HALF_SCREEN),
+            ("output_v_per_div", LOAD_V / HALF_SCREEN),
+            ("s_per_div", record_s / DIVISIONS),
+            ("offset_s", (0.5 - BEFORE) * record_s),
+            ("points", ANSWER_POINTS),
+            ("level_v", f64::midpoint(from_v, to_v)),
+        ];
+        self.query(Device::Digitizer, program, &arguments)
+    }
+
+    /// Reads the output in the record of an answer.
+    pub fn answer(&self) -> Query {
+        let arguments = [("channel", OUTPUT_CHANNEL), ("points", ANSWER_POINTS)];
+        self.query(Device::Digitizer, "waveform", &arguments)
+    }
+
     /// Proves that the record is complete.
     pub fn complete(&self) -> Query {
         self.query(Device::Digitizer, "complete", &[])
@@ -192,8 +220,22 @@ impl Points {
         self.query(Device::PulseSource, "train", &arguments)
     }
 
-    /// Arms the digitizer with the scales of all channels; the record begins [`ac_plan::BEFORE`] before the edge.
+    /// Arms the digitizer with the scales of all channels; the record begins [`ac_plan::BEFORE`] before the rising edge.
     pub fn capture_all(&self, plan: &Plan, scales: &Scales) -> Query {
+        self.capture_step(
+            plan,
+            scales,
+            (0.0, plan.turn_on_v.unwrap_or(plan.control_v)),
+        )
+    }
+
+    /// Arms the digitizer as [`Self::capture_all`] does, around the step of the control voltage from one level to the
+    /// other.
+    pub fn capture_step(&self, plan: &Plan, scales: &Scales, (from_v, to_v): (f64, f64)) -> Query {
+        let program = match to_v > from_v {
+            true => "capture_all",
+            false => "capture_all_falling",
+        };
         let arguments = [
             ("control_v_per_div", plan.control_v / HALF_SCREEN),
             ("divided_v_per_div", scales.divided_v),
@@ -202,9 +244,9 @@ impl Points {
             ("s_per_div", scales.record_s / DIVISIONS),
             ("offset_s", (0.5 - ac_plan::BEFORE) * scales.record_s),
             ("points", scales.points),
-            ("level_v", plan.turn_on_v.unwrap_or(plan.control_v) / 2.0),
+            ("level_v", f64::midpoint(from_v, to_v)),
         ];
-        self.query(Device::Digitizer, "capture_all", &arguments)
+        self.query(Device::Digitizer, program, &arguments)
     }
 
     /// Triggers the digitizer at once, without an edge.

@@ -35,7 +35,7 @@ use crate::dut::device::TestOrder;
 use crate::dut::procedure::{Progress, TestProcedure};
 use crate::dut::record::{Own, Stop, TestRecord};
 use crate::dut::{Characteristic, Kind, Verdict};
-use crate::gauge::Judgement;
+use crate::gauge::{Judgement, Side};
 use crate::instrument::act::{JobDone, Runner, RunnerState};
 use crate::rig::image::Image;
 use crate::rig::supply::RangeMismatch;
@@ -173,11 +173,29 @@ impl Test {
 }
 
 impl Test {
+    /// Returns what is proven about the limit of a threshold.
+    fn proof(&self, of: Parameter) -> Option<Judgement> {
+        self.state.proof(of).or_else(|| self.proof_of_late(of))
+    }
+
+    /// Returns the failure of an output that obeys at the limit of its threshold, but too late; `None` while its time at
+    /// the nominal voltage is not proven right, because then its time is to blame.
+    fn proof_of_late(&self, of: Parameter) -> Option<Judgement> {
+        let (time, side) = match of {
+            Parameter::TurnOffVoltage => (Parameter::TurnOffTime, Side::Low),
+            _turn_on => (Parameter::TurnOnTime, Side::High),
+        };
+        let time = self.state.record.judged(&self.device.recipe, [time]);
+        let is_right = matches!(time[..], [(_, Judgement::Pass)]);
+        let is_late = self.state.late.contains(&of);
+        (is_late && is_right).then_some(Judgement::Fail(side))
+    }
+
     /// Returns for each threshold whether the part obeys at its limit. Absent is a threshold within the guard band, and
     /// one that the test has not reached.
     fn conforms(&self) -> Vec<(&'static str, bool)> {
         let found = self.why_stopped().and_then(Stop::proven);
-        let obeys = |of: Parameter| match self.state.proof(of) {
+        let obeys = |of: Parameter| match self.proof(of) {
             Some(Judgement::Pass) => Some(true),
             Some(Judgement::Fail(_)) => Some(false),
             Some(Judgement::Conditional(_) | Judgement::Void) => None,
@@ -236,8 +254,9 @@ impl TestProcedure for Test {
 
     /// Judges each result; what the conformity tests have proven takes the place of a judged voltage.
     fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
-        let judge = |of: Parameter| match self.state.proof(of) {
+        let judge = |of: Parameter| match self.proof(of) {
             Some(judgement) => vec![(of, judgement)],
+            None if self.state.late.contains(&of) => Vec::new(),
             None => self.state.record.judged(&self.device.recipe, [of]),
         };
         let all = Parameter::ALL.into_iter().flat_map(judge);

@@ -47,6 +47,8 @@ pub struct State {
     pub turn_on_v: Option<f64>,
     /// What the conformity tests have proven about limits.
     pub proven: Vec<(Parameter, Judgement)>,
+    /// Voltages at whose limits the output obeys, but not within its time.
+    pub late: Vec<Parameter>,
     /// True for a part whose sampled characteristics are left out.
     pub is_no_sample: bool,
     /// What the pulse source does.
@@ -151,7 +153,7 @@ impl State {
             DcStage::Blocks => conformity::block_acts(self, plan, points),
             DcStage::BlocksBeyond => conformity::block_beyond_acts(plan, points),
             DcStage::Conducts => conformity::conduct_acts(plan, points, -plan.guard_v),
-            DcStage::ConductsBeyond => conformity::conduct_acts(plan, points, plan.guard_v),
+            DcStage::ConductsBeyond => conformity::conduct_beyond_acts(plan, points),
             DcStage::Threshold(direction) => threshold::acts(self, direction, plan, points),
             DcStage::Timing => timing::acts(self, plan, points),
             DcStage::Resistance => resistance::acts(self, plan, dc, points),
@@ -214,8 +216,8 @@ impl State {
             DcStage::StuckShort => Ok(contact::conclude_stuck(self, given)),
             DcStage::Blocks => conformity::conclude_blocks(self, plan, dc, given),
             DcStage::BlocksBeyond => conformity::conclude_blocks_beyond(self, plan, dc, given),
-            DcStage::Conducts => conformity::conclude_conducts(self, given),
-            DcStage::ConductsBeyond => conformity::conclude_conducts_beyond(self, given),
+            DcStage::Conducts => conformity::conclude_conducts(self, plan, given),
+            DcStage::ConductsBeyond => conformity::conclude_conducts_beyond(self, plan, given),
             DcStage::Threshold(direction) => threshold::conclude(self, direction, plan, given),
             DcStage::Timing => timing::conclude(self, plan, given),
             DcStage::Resistance => resistance::conclude(self, plan, dc, given),

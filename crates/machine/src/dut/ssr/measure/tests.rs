@@ -197,6 +197,28 @@ fn a_voltage_within_the_guard_band_is_not_proven() {
 }
 
 #[test]
+fn an_output_late_at_its_limit_fails_the_voltage() {
+    let test = tested(changed(|it| it.weak_s = Some(1.2e-3)));
+    let late = [
+        Reason::outside(Parameter::TurnOnVoltage.into(), Side::High),
+        Reason::outside(Parameter::TurnOffVoltage.into(), Side::Low),
+    ];
+    assert_eq!(test.verdict(), Verdict::Fail(late.to_vec()));
+    assert_eq!(
+        test.record().conforms,
+        [("v_on_conforms", false), ("v_off_conforms", false)]
+    );
+}
+
+#[test]
+fn an_output_late_at_every_voltage_fails_its_time() {
+    let test = tested(changed(|it| it.on_s = 1.2e-3));
+    let late = Reason::outside(Parameter::TurnOnTime.into(), Side::High);
+    assert_eq!(test.verdict(), Verdict::Fail(vec![late]));
+    assert_eq!(test.record().conforms, [("v_off_conforms", true)]);
+}
+
+#[test]
 fn the_simple_rule_applies_the_limit_itself() {
     let simple = [("\"guard_band\"", "\"simple\"")];
     let part = changed(|it| it.turn_on_v = 3.5);

@@ -1,7 +1,7 @@
 //! Turn-on and turn-off voltage by a search. The output switches with hysteresis, so each step begins from 0 V, or
 //! from the nominal voltage for the turn-off.
 
-use super::conformity::conducts;
+use super::conformity::{is_off, is_on};
 use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
 use super::line::conforms::{self, Conducting};
@@ -56,11 +56,23 @@ pub fn line_acts(
     };
     state.search = Some(search);
     match direction {
-        Direction::Rising => conforms::rising_acts(state, search.next_v(), plan, ac, points),
+        Direction::Rising => {
+            conforms::rising_acts(state, (search.next_v(), on_s(plan)), plan, ac, points)
+        }
         Direction::Falling => {
-            conforms::falling_acts(state, (search.next_v(), plan.off_s), plan, ac, points)
+            conforms::falling_acts(state, (search.next_v(), off_s(plan)), plan, ac, points)
         }
     }
+}
+
+/// Returns the time that a search gives an AC part to conduct, s: near its threshold it is later than its limit allows.
+fn on_s(plan: &Plan) -> f64 {
+    plan.on_s + plan.dwell().as_seconds()
+}
+
+/// Returns the time that a search gives an AC part to block, s.
+fn off_s(plan: &Plan) -> f64 {
+    plan.off_s + plan.dwell().as_seconds()
 }
 
 /// Concludes one search step of an AC part.
@@ -75,8 +87,8 @@ pub fn conclude_line(
         return Ok(Next::Planned);
     };
     let conducts = match direction {
-        Direction::Rising => conforms::conducting(ac, given)? == Conducting::Both,
-        Direction::Falling => !conforms::blocks(ac, given)?,
+        Direction::Rising => conforms::conducting(ac, given, on_s(plan))? == Conducting::Both,
+        Direction::Falling => !conforms::blocks(ac, given, off_s(plan))?,
     };
     let again = Stage::Ac(AcStage::Threshold(direction));
     Ok(narrowed(
@@ -118,12 +130,11 @@ pub fn conclude(
     };
     let [ampere] = given.singles(Device::SmuOut)?;
     let again = Stage::Dc(DcStage::Threshold(direction));
-    Ok(narrowed(
-        state,
-        (search, conducts(ampere)),
-        (direction, again),
-        plan,
-    ))
+    let is_on = match direction {
+        Direction::Rising => is_on(ampere),
+        Direction::Falling => !is_off(ampere),
+    };
+    Ok(narrowed(state, (search, is_on), (direction, again), plan))
 }
 
 /// Narrows the interval of a search, depending on whether the output conducted; `again` is the stage of the next step.

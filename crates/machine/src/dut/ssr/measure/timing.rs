@@ -10,7 +10,7 @@ use crate::dut::ssr::edges::{Crossing, Edges, pulse};
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
-use crate::dut::ssr::program::{CONTROL_CHANNEL, OUTPUT_CHANNEL};
+use crate::dut::ssr::program::{BEFORE, CONTROL_CHANNEL, OUTPUT_CHANNEL};
 use crate::instrument::act::Act;
 use crate::instrument::conversion::Conversion;
 use units::{Span, Unit};
@@ -26,17 +26,19 @@ pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
         | Position::Direct
         | Position::Line
         | Position::LinePulsed
-        | Position::Loop => conformity::to_load(state, plan, points),
+        | Position::Loop => conformity::to_load(state, plan, points, None),
     };
     state.position = Position::Pulsed;
     let mut queries = vec![points.off(Device::SmuIn), points.capture(plan)];
     queries.extend(state.prepare_pulses(plan, points));
     state.pulses = Pulses::Sent;
     let record = Span::seconds(plan.record_s());
+    // The digitizer needs the part of its record before the trigger.
+    let before = Span::seconds(2.0 * BEFORE * plan.record_s());
     acts.extend([
         Act::Query(queries),
         Act::Set(points.outputs(Position::Pulsed.outputs())),
-        Act::Wait(RELAY + record),
+        Act::Wait(RELAY.max(before)),
         Act::Query(vec![points.start()]),
         Act::Wait(record + STORED),
     ]);

@@ -21,6 +21,8 @@ use std::sync::Arc;
 use texts::Message;
 use units::{RigTime, Span};
 
+mod circuit;
+
 /// Offset of the meter at the output, A: the open fixture shows it.
 const OFFSET_A: f64 = 5e-9;
 
@@ -98,6 +100,8 @@ pub struct Part {
     pub sticks_loaded_v: f64,
     /// Inputs that the fixture never reports.
     pub dead: Vec<DigitalIn>,
+    /// Times to answer a step to or from a voltage near the threshold, when they differ from those of the pulse, s.
+    pub weak_s: Option<f64>,
     /// Voltage at the socket after the test.
     pub residual_v: f64,
     /// Program that fails, and program that delivers these numbers instead.
@@ -124,6 +128,7 @@ pub fn good() -> Part {
         sticks_at_v: f64::INFINITY,
         sticks_loaded_v: f64::INFINITY,
         dead: Vec::new(),
+        weak_s: None,
         residual_v: 0.5,
         failing: None,
         spoiled: None,
@@ -149,6 +154,11 @@ pub struct Bench {
     has_failed: bool,
     record_s: (f64, f64),
     pulse_s: f64,
+    /// Level at which the digitizer waits for an edge, and whether for a falling one.
+    waits: Option<(f64, bool)>,
+    /// Whether the output was on before the recorded edge, and whether it is long after it.
+    answer: (bool, bool),
+    control_v: f64,
 }
 
 impl Bench {
@@ -171,6 +181,9 @@ impl Bench {
             has_failed: false,
             record_s: (0.0, 0.0),
             pulse_s: 0.0,
+            waits: None,
+            answer: (false, false),
+            control_v: 0.0,
         }
     }
 
@@ -384,15 +397,21 @@ impl Bench {
                 self.pulse_s = given("width_s");
                 Vec::new()
             }
-            (Device::Digitizer, "capture") => {
+            (Device::Digitizer, "capture" | "capture_falling") => {
                 self.record_s = (10.0 * given("s_per_div"), given("points"));
+                self.waits = Some((given("level_v"), query.program == "capture_falling"));
                 Vec::new()
             }
             (Device::PulseSource, "start") => {
                 assert!(self.on.contains(&DigitalOut::DriveSelect));
+                self.waits = None;
                 Vec::new()
             }
-            (Device::Digitizer, "complete") | (Device::PulseSource, "off") => Vec::new(),
+            (Device::Digitizer, "complete") => {
+                assert!(self.waits.is_none(), "the digitizer still waits");
+                Vec::new()
+            }
+            (Device::PulseSource, "off") => Vec::new(),
             (Device::Digitizer, "waveform") => {
                 return Delivered {
                     numbers: Vec::new(),
@@ -409,65 +428,6 @@ impl Bench {
         Delivered {
             numbers,
             waveform: None,
-        }
-    }
-
-    fn input_a(&self, volts: f64) -> f64 {
-        match volts == 0.0 {
-            true => 0.0,
-            false if volts < 0.0 => -self.part.reverse_a,
-            false => self.part.input_a,
-        }
-    }
-
-    fn control(&mut self, volts: f64) {
-        if volts >= self.part.turn_on_v {
-            self.is_lit = true;
-            let is_loaded = self.on.contains(&DigitalOut::SmuLoad);
-            let loaded = is_loaded && volts >= self.part.sticks_loaded_v;
-            self.is_stuck |= loaded || volts >= self.part.sticks_at_v;
-        } else if volts < self.part.turn_off_v {
-            self.is_lit = self.is_stuck;
-        }
-    }
-
-    fn output_a(&self) -> f64 {
-        let is_on = |output| self.on.contains(&output);
-        assert!(is_on(DigitalOut::SmuToOutput) && is_on(DigitalOut::BleedOpen));
-        let load_ohm = f64::from(u8::from(is_on(DigitalOut::SmuLoad))) * 1000.0;
-        if self.part.is_turned {
-            let forward = !is_on(DigitalOut::OutputPolarity);
-            return f64::from(u8::from(forward)) * 1.9e-3;
-        }
-        match (self.is_lit, self.is_heated) {
-            (true, _) => self.source_v / (load_ohm + self.part.ohm),
-            (false, true) => self.part.hot_leakage_a * self.source_v.signum(),
-            (false, false) => self.part.leakage_a * self.source_v.signum(),
-        }
-    }
-
-    fn waveform(&self, channel: f64) -> Waveform {
-        let (record_s, points) = self.record_s;
-        let (step_s, start_s) = (record_s / points, -0.1 * record_s);
-        let (part, edge_s) = (&self.part, 20e-6);
-        let at = |index: usize| start_s + (index as f64 + 0.3) * step_s;
-        let pulse = |at_s: f64| f64::from(u8::from((0.0..self.pulse_s).contains(&at_s)));
-        let load = |at_s: f64| {
-            let on = (at_s - part.on_s) / edge_s + 0.9;
-            let off = 0.1 - (at_s - self.pulse_s - part.off_s) / edge_s;
-            on.clamp(0.0, 1.0).min(off.clamp(0.0, 1.0))
-        };
-        let volts = |at_s: f64| match channel {
-            1.0 => 5.0 * pulse(at_s),
-            3.0 => 8.0 - 7.99 * load(at_s),
-            other => panic!("channel {other}"),
-        };
-        Waveform {
-            start_s: start_s + 0.3 * step_s,
-            step_s,
-            volts: (0..points as usize)
-                .map(|it| volts(at(it)) as f32)
-                .collect(),
         }
     }
 }

@@ -55,6 +55,7 @@ pub struct LineBench {
     scales: [f64; 3],
     record: (f64, f64, f64),
     begins_s: Option<f64>,
+    falls: bool,
     train: (f64, f64, f64, f64),
     memory: Vec<Vec<f32>>,
     seed: u64,
@@ -90,6 +91,7 @@ impl LineBench {
             scales: [1.0; 3],
             record: (0.0, 1.0, 0.0),
             begins_s: None,
+            falls: false,
             train: (0.0, 1.0, 0.0, 0.0),
             memory: Vec::new(),
             seed: 1,
@@ -319,7 +321,8 @@ impl LineBench {
                 self.trigger(now_s);
                 Vec::new()
             }
-            (Device::Digitizer, "capture_all") => {
+            (Device::Digitizer, "capture_all" | "capture_all_falling") => {
+                self.falls = query.program == "capture_all_falling";
                 let scale = |name| given(name) * 4.0;
                 self.scales = [
                     scale("divided_v_per_div"),
@@ -374,7 +377,11 @@ impl LineBench {
         let now_s = self.now_s();
         let before = self.control.last().map_or(0.0, |it| it.1);
         self.control.push((now_s, volts));
-        if before < self.record.2 && volts >= self.record.2 {
+        let crosses = match self.falls {
+            true => before >= self.record.2 && volts < self.record.2,
+            false => before < self.record.2 && volts >= self.record.2,
+        };
+        if crosses {
             self.trigger(now_s);
         }
     }

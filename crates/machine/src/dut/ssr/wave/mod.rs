@@ -20,6 +20,19 @@ pub mod warming;
 
 use crate::instrument::query::Waveform;
 
+/// Returns the samples of a record from a time on.
+pub fn tail(waveform: &Waveform, from_s: f64) -> Waveform {
+    let first = ((from_s - waveform.start_s) / waveform.step_s)
+        .ceil()
+        .max(0.0);
+    let first = (first as usize).min(waveform.volts.len());
+    Waveform {
+        start_s: waveform.start_s + first as f64 * waveform.step_s,
+        step_s: waveform.step_s,
+        volts: waveform.volts[first..].to_vec(),
+    }
+}
+
 /// One channel of a record, borrowed: samples at equal intervals, each multiplied by a factor, minus an offset.
 #[derive(Debug, Clone, Copy)]
 pub struct Channel<'a> {

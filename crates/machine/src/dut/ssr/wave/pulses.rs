@@ -3,7 +3,7 @@
 
 use super::Channel;
 use super::mains::Mains;
-use super::turn::{Jump, jump, quiet_from};
+use super::turn::{Jump, jump, run_from};
 
 /// The clamped channel follows the output up to this share of the clamp voltage.
 const FOLLOWS: f64 = 0.93;
@@ -17,6 +17,8 @@ const APART_V: f64 = 1.5;
 const AMBIGUOUS_S: f64 = 0.4e-3;
 /// Time for which an output must block without a break before it counts as off, s.
 const OFF_S: f64 = 1e-3;
+/// Time for which an output must conduct without a break before it counts as on, s.
+const CONDUCTS_S: f64 = 10e-6;
 /// Time before and after a zero of the mains in which an output fires again, s.
 const AGAIN_S: f64 = 0.8e-3;
 
@@ -137,15 +139,16 @@ impl Output<'_> {
             let is_low = self.at(it).abs() <= self.on_v;
             is_low && mains.at(channel.time(it)).abs() > apart_v
         };
-        let first = (from..to.saturating_sub(1)).find(|it| conducts(*it) && conducts(it + 1))?;
+        let first = run_from(conducts, (from, to), self.conducting_count())?;
         let back = 2 * self.passing(mains) + 5;
-        let found = jump(
-            channel,
-            |it| self.at(it),
-            (first.saturating_sub(back).max(from), first + 2),
-        )?;
-        // The fit over the whole record knows the slope of the mains better than these few samples.
-        Some(found.along(mains.slope(found.at_s), channel.step_s))
+        let range = (first.saturating_sub(back).max(from), first);
+        jump(channel, |it| self.at(it), mains, range)
+    }
+
+    /// Returns the number of samples in a row that must show the conducting output.
+    fn conducting_count(&self) -> usize {
+        let count = (CONDUCTS_S / self.divided.step_s).round() as usize + 1;
+        count.max(2)
     }
 
     /// Returns the peak after each zero of the mains, from the turn-on to the falling edge. The true peak lies between
@@ -176,14 +179,8 @@ impl Output<'_> {
         let channel = &self.divided;
         let (from, to) = (channel.index(pulse.fall_s), channel.index(pulse.end_s));
         let count = (OFF_S / channel.step_s).ceil() as usize;
-        let blocked = |it| {
-            if self.at(it).abs() > self.on_v {
-                0.0
-            } else {
-                2.0
-            }
-        };
-        let begins = quiet_from(blocked, (from, to), 1.0, count)?;
+        let blocks = |it: usize| self.at(it).abs() > self.on_v;
+        let begins = run_from(blocks, (from, to), count)?;
         let begins_s = channel.time(begins);
         Some(mains.zero_after(begins_s - mains.half_s() / 2.0))
     }

@@ -1,20 +1,28 @@
 //! Finds the instants at which the voltage of an output jumps from the curve of the mains to the drop.
+//!
+//! Before the jump the output follows the mains, whose curve is known from the whole record but for a shift from cycle to
+//! cycle; behind it the output stays at its drop. Every split of one and the same window is tried, and the one that
+//! leaves the least sum of squares is the jump. The window and its parts are times, so that the result depends neither
+//! on the rate of the samples nor on which of two channels shows them.
 
 use super::Channel;
-use super::least_squares::Sums;
+use super::mains::Mains;
 
-/// Greatest number of samples before a jump for the straight line, and of samples after it for the level.
-const SIDE: usize = 12;
-const BEHIND: usize = 5;
+/// Time before a jump whose samples show the shift of the mains, and time behind it whose samples show the drop, s.
+const BEFORE_S: f64 = 120e-6;
+const BEHIND_S: f64 = 50e-6;
+/// Least number of samples of either.
+const FEWEST_BEFORE: usize = 12;
+const FEWEST_BEHIND: usize = 2;
 
 /// A jump between two samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jump {
     /// Time in the middle of the two samples, s.
     pub at_s: f64,
-    /// Value of the straight line through the samples before, at that time.
+    /// Value before the jump, at that time.
     pub before: f64,
-    /// Rise per second of that line.
+    /// Rise of the mains per second at that time.
     pub slope: f64,
     /// Standard uncertainty of `before` from noise, without that of the instant.
     pub u: f64,
@@ -22,33 +30,15 @@ pub struct Jump {
     pub index: usize,
 }
 
-impl Jump {
-    /// Returns the jump for a curve whose rise before it is known. Then `before` is the mean of the samples, carried to
-    /// the jump by that rise. This halves the uncertainty, because the samples need not show the rise as well.
-    pub fn along(self, slope: f64, step_s: f64) -> Self {
-        let from_middle_s = SIDE as f64 / 2.0 * step_s;
-        Self {
-            before: self.before + (slope - self.slope) * from_middle_s,
-            slope,
-            u: self.u / 2.0,
-            ..self
-        }
-    }
-}
-
-/// Returns the first sample from `from` to before `to` with which `count` samples in a row within `level` of 0 begin.
-pub fn quiet_from(
-    value: impl Fn(usize) -> f64,
+/// Returns the first sample from `from` to before `to` with which `count` samples in a row begin that `is_so` accepts.
+pub fn run_from(
+    is_so: impl Fn(usize) -> bool,
     (from, to): (usize, usize),
-    level: f64,
     count: usize,
 ) -> Option<usize> {
     let mut run = 0;
     for index in from..to {
-        run = match value(index).abs() <= level {
-            true => run + 1,
-            false => 0,
-        };
+        run = if is_so(index) { run + 1 } else { 0 };
         if run == count {
             return Some(index + 1 - count);
         }
@@ -56,49 +46,68 @@ pub fn quiet_from(
     None
 }
 
-/// Returns the jump between `from` and `to`: the split for which a straight line through the samples right before it
-/// and a level through those right after it leave the least sum of squares.
+/// Returns the jump whose first sample behind it lies from `from` to `last`, a sample at which the output conducts;
+/// `None` without samples before it.
 pub fn jump(
     channel: &Channel,
     value: impl Fn(usize) -> f64,
-    (from, to): (usize, usize),
+    mains: &Mains,
+    (from, last): (usize, usize),
 ) -> Option<Jump> {
-    let first = from.max(SIDE);
-    let last = to.min(channel.len().checked_sub(BEHIND)?);
-    let splits = (first..last).filter_map(|index| {
-        let line = line_before(channel, &value, index)?;
-        let behind = (index..index + BEHIND).map(&value);
-        let level = behind.clone().sum::<f64>() / BEHIND as f64;
-        let spread: f64 = behind.map(|it| (it - level).powi(2)).sum();
-        let squares = line.1.powi(2) * (SIDE - 2) as f64 + spread;
-        Some((squares, index, line))
-    });
-    let (_, index, (line, residual)) = splits.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let before = samples(channel, BEFORE_S).max(FEWEST_BEFORE);
+    let behind = samples(channel, BEHIND_S).max(FEWEST_BEHIND);
+    let begins = from.saturating_sub(before);
+    let ends = (last + behind).min(channel.len());
+    let at = |it: usize| (value(it), mains.at(channel.time(it)));
+    let seen: Vec<(f64, f64)> = (begins..ends).map(at).collect();
+    let shifts: Vec<f64> = seen.iter().map(|(volts, line)| volts - line).collect();
+    // The drop has the sign of the mains.
+    let drops: Vec<f64> = seen
+        .iter()
+        .map(|(volts, line)| volts * line.signum())
+        .collect();
+    let squares = |split: &usize| {
+        let (shift, drop) = (Level::of(&shifts[..*split]), Level::of(&drops[*split..]));
+        shift.squares + drop.squares
+    };
+    let splits = (from.max(begins + 2)..=last).map(|it| it - begins);
+    let split = splits.min_by(|one, other| squares(one).total_cmp(&squares(other)))?;
+    let shift = Level::of(&shifts[split.saturating_sub(before)..split]);
+    let index = begins + split;
     let at_s = channel.time(index) - channel.step_s / 2.0;
-    let before = line[0] - line[1] * channel.step_s / 2.0;
-    // At its end, a line through n points is known to twice the standard deviation of their mean.
-    let u = 2.0 * residual / (SIDE as f64).sqrt();
     Some(Jump {
         at_s,
-        before,
-        slope: line[1],
-        u,
+        before: mains.at(at_s) + shift.mean,
+        slope: mains.slope(at_s),
+        u: (shift.squares / (shift.count - 1.0)).sqrt() / shift.count.sqrt(),
         index,
     })
 }
 
-/// Returns the straight line of the samples before `index`: its value at the time of `index`, its rise per second, and
-/// the standard deviation of the samples around it.
-fn line_before(
-    channel: &Channel,
-    value: &impl Fn(usize) -> f64,
-    index: usize,
-) -> Option<([f64; 2], f64)> {
-    let mut sums = Sums::<2>::default();
-    for sample in index - SIDE..index {
-        let since_s = (sample as f64 - index as f64) * channel.step_s;
-        sums.add([1.0, since_s], value(sample));
-    }
-    let solution = sums.solve()?;
-    Some((solution.of, solution.residual))
+/// Returns the number of samples in a time, at least 1.
+fn samples(channel: &Channel, time_s: f64) -> usize {
+    (time_s / channel.step_s).round().max(1.0) as usize
 }
+
+/// Mean of values, the sum of squares around it, and their number.
+struct Level {
+    mean: f64,
+    squares: f64,
+    count: f64,
+}
+
+impl Level {
+    fn of(values: &[f64]) -> Self {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count.max(1.0);
+        let squares = values.iter().map(|it| (it - mean).powi(2)).sum();
+        Self {
+            mean,
+            squares,
+            count,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

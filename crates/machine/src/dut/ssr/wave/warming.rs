@@ -1,4 +1,4 @@
-//! Value of a cold part from its values while a current warms it: each is the mean over one of several equal times, and
+//! Course of a value while a current warms the part, from the cold part on. The values are means over equal times in a row;
 //! they approach their end exponentially, with the time constant of the junction.
 
 /// Ratios of the distances from the end, from one value to the next, that are tried.
@@ -8,27 +8,37 @@ const TRIED: u32 = 45;
 /// Fewest values.
 const FEWEST: usize = 5;
 
-/// Returns the value at the begin of the first time; none for fewer than five values.
-pub fn begin(values: &[f64]) -> Option<f64> {
+/// Returns the course of the values; none for fewer than five values.
+pub fn course(values: &[f64]) -> Option<Course> {
     if values.len() < FEWEST {
         return None;
     }
     let tried = (0..TRIED).map(|it| LEAST + (MOST - LEAST) * f64::from(it) / f64::from(TRIED - 1));
     let best = tried.map(|ratio| fitted(values, ratio));
     let best = best.min_by(|one, other| one.squares.total_cmp(&other.squares))?;
-    let begin = best.end + best.rest;
-    begin.is_finite().then_some(begin)
+    best.at(0.0).is_finite().then_some(best)
 }
 
-/// Values that approach `end`, from which they are `rest` away at the begin.
-struct Fit {
+/// A value that approaches its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Course {
     end: f64,
+    /// Distance from the end at the begin of the first time.
     rest: f64,
+    /// Ratio of the distances from the end, from one time to the next.
+    ratio: f64,
     squares: f64,
 }
 
+impl Course {
+    /// Returns the value after this many of the equal times.
+    pub fn at(&self, times: f64) -> f64 {
+        self.end + self.rest * self.ratio.powf(times)
+    }
+}
+
 /// Fits both by least squares, for a distance that each time multiplies by `ratio`.
-fn fitted(values: &[f64], ratio: f64) -> Fit {
+fn fitted(values: &[f64], ratio: f64) -> Course {
     let count = values.len() as f64;
     // The mean of the exponential over the first time, as a share of its begin.
     let first = (1.0 - ratio) / -ratio.ln();
@@ -48,9 +58,10 @@ fn fitted(values: &[f64], ratio: f64) -> Fit {
         .iter()
         .zip(&shares)
         .map(|(value, it)| value - end - rest * it);
-    Fit {
+    Course {
         end,
         rest,
+        ratio,
         squares: off.map(|it| it * it).sum(),
     }
 }
@@ -73,15 +84,19 @@ mod tests {
     #[test]
     fn the_cold_value_is_found_for_any_time_constant() {
         for tau_ms in [6.0, 10.0, 20.0, 40.0, 100.0] {
-            let found = begin(&warming(tau_ms)).expect("ten values");
-            assert!((found - 1.2).abs() < 2e-4, "{tau_ms} ms: {found}");
+            let found = course(&warming(tau_ms)).expect("ten values");
+            for at_ms in [0.0, 10.0, 200.0] {
+                let truth = 1.2 - 5e-3 * (1.0 - f64::exp(-at_ms / tau_ms));
+                let error = found.at(at_ms / 20.0) - truth;
+                assert!(error.abs() < 2e-4, "{tau_ms} ms, at {at_ms} ms: {error}");
+            }
         }
     }
 
     #[test]
     fn a_constant_value_stays_and_few_are_refused() {
-        let found = begin(&[1.5; 8]).expect("eight values");
-        assert!((found - 1.5).abs() < 1e-12);
-        assert_eq!(begin(&[1.5; 4]), None);
+        let found = course(&[1.5; 8]).expect("eight values");
+        assert!((found.at(0.0) - 1.5).abs() < 1e-12);
+        assert_eq!(course(&[1.5; 4]), None);
     }
 }

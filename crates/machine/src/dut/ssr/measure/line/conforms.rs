@@ -1,4 +1,5 @@
-//! Conformity of an AC part: it blocks at the turn-off voltage, and conducts at the turn-on voltage in both polarities.
+//! Conformity of an AC part: after a step of its control to the turn-off voltage it blocks within its turn-off time,
+//! and after a step to the turn-on voltage it conducts within its turn-on time in both polarities.
 //!
 //! The control voltage stays a guard band away from the limit, on the side that is harder for the part. A part that
 //! fails there is tried a guard band beyond the limit, then far beyond: this tells a wrong threshold from an output
@@ -12,13 +13,13 @@ use super::leakage::{Seen, record_acts, seen};
 use super::stage::{AcStage, Shift};
 use super::{STORED, close, is_switched};
 use crate::dut::ssr::Finding;
-use crate::dut::ssr::ac_plan::{AcPlan, CLAMP_V, DIVIDER};
+use crate::dut::ssr::ac_plan::{AcPlan, CLAMP_V, DIVIDER, Scales};
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
-use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL};
-use crate::dut::ssr::wave::Channel;
+use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::wave::pulses::Output;
+use crate::dut::ssr::wave::{Channel, tail};
 use crate::gauge::{Judgement, Side};
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
@@ -33,7 +34,7 @@ const ROOM: f64 = 0.05;
 /// An output that still conducts this long after its control is off is stuck on, s.
 const LATE_S: f64 = 0.2;
 
-/// Polarities that conduct in the last period of a record.
+/// Polarities that conduct in a period of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Conducting {
     /// Both.
@@ -59,40 +60,49 @@ pub fn block_acts(
             .turn_off_v
             .map_or(0.0, |limit_v| limit_v + plan.guard_v),
         Shift::Beyond => (limit_v - plan.guard_v).max(0.0),
-        Shift::Far | Shift::Late => 0.0,
+        Shift::Far => 0.0,
+        Shift::Late => {
+            let mut acts = close(state, Position::Line, ac, points);
+            let scales = ac.blocks(0.0);
+            acts.extend(record_acts(plan, points, &scales, (0.0, LATE_S), None));
+            return acts;
+        }
     };
-    let wait_s = match shift {
-        Shift::Within | Shift::Beyond | Shift::Far => plan.off_s,
-        Shift::Late => LATE_S,
-    };
-    falling_acts(state, (level_v, wait_s), plan, ac, points)
+    falling_acts(state, (level_v, plan.off_s), plan, ac, points)
 }
 
-/// Returns the acts that let the part conduct at its nominal voltage, go down to a level, and take a record.
+/// Returns the acts that let the part conduct at its nominal voltage for a period and record its answer to a step down
+/// to a level, from the step on. It must block from `within_s` after the step on.
 pub fn falling_acts(
     state: &mut State,
-    (level_v, wait_s): (f64, f64),
+    (level_v, within_s): (f64, f64),
     plan: &Plan,
     ac: &AcPlan,
     points: &Points,
 ) -> Vec<Act> {
+    let scales = ac.blocks(within_s);
     let mut acts = close(state, Position::Line, ac, points);
     acts.extend([
-        Act::Query(vec![points.source(
-            Device::SmuIn,
-            plan.control_v,
-            &plan.input,
-        )]),
+        Act::Query(vec![
+            points.source(Device::SmuIn, plan.control_v, &plan.input),
+            points.capture_step(plan, &scales, (plan.control_v, level_v)),
+        ]),
         Act::Wait(Span::seconds(2.0 * ac.half_s())),
+        Act::Query(vec![points.level(Device::SmuIn, level_v)]),
+        Act::Wait(Span::seconds(scales.record_s) + STORED),
+        Act::Query(vec![
+            points.complete(),
+            points.channel(&scales, DIVIDED_CHANNEL),
+            points.channel(&scales, SHUNT_CHANNEL),
+        ]),
     ]);
-    let scales = ac.blocks();
-    acts.extend(record_acts(plan, points, &scales, (level_v, wait_s), None));
     acts
 }
 
-/// Returns true when the record of the digitizer shows an output that blocks.
-pub fn blocks(ac: &AcPlan, given: &Given) -> Result<bool, NotDelivered> {
-    let [divided, shunt] = given.waveforms()?;
+/// Returns true when the record of the digitizer shows an output that blocks from `from_s` after its trigger on.
+pub fn blocks(ac: &AcPlan, given: &Given, from_s: f64) -> Result<bool, NotDelivered> {
+    let all: [_; 2] = given.waveforms()?;
+    let [divided, shunt] = all.map(|it| tail(&it, from_s));
     let seen = seen(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))?;
     Ok(match seen {
         Seen::Blocked(leak) => leak.rms_a(ac) <= (1.0 + ROOM) * ac.blocked_a,
@@ -112,7 +122,12 @@ pub fn conclude_blocks(
         return Ok(Next::Planned);
     }
     let of = Parameter::TurnOffVoltage;
-    match (blocks(ac, given)?, shift) {
+    let from_s = if shift == Shift::Late {
+        0.0
+    } else {
+        plan.off_s
+    };
+    match (blocks(ac, given, from_s)?, shift) {
         (true, Shift::Within) => {
             let proven = (of, Judgement::Pass);
             state.proven.extend(plan.turn_off_v.map(|_| proven));
@@ -155,12 +170,12 @@ pub fn conduct_acts(
     if shift == Shift::Late {
         return late_acts(state, plan, ac, points);
     }
-    rising_acts(state, level_v, plan, ac, points)
+    rising_acts(state, (level_v, plan.on_s), plan, ac, points)
 }
 
 /// Returns the acts that record the output long after its control has gone to the nominal voltage.
 fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec<Act> {
-    let scales = ac.conducts();
+    let scales = ac.conducts(0.0);
     let mut acts = close(state, Position::Line, ac, points);
     acts.extend([
         Act::Query(vec![
@@ -169,52 +184,54 @@ fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Ve
         ]),
         Act::Wait(Span::seconds(LATE_S)),
         Act::Query(vec![points.force_trigger()]),
-        Act::Wait(Span::seconds(scales.record_s) + STORED),
-        Act::Query(vec![
-            points.complete(),
-            points.channel(&scales, DIVIDED_CHANNEL),
-            points.channel(&scales, OUTPUT_CHANNEL),
-        ]),
     ]);
+    acts.extend(recorded(&scales, points));
     acts
 }
 
-/// Returns the acts that step the control from 0 V to a level and record the output.
+/// Returns the acts that step the control from 0 V to a level and record the output from the step on. It must conduct
+/// from `within_s` after the step on.
 pub fn rising_acts(
     state: &mut State,
-    level_v: f64,
+    (level_v, within_s): (f64, f64),
     plan: &Plan,
     ac: &AcPlan,
     points: &Points,
 ) -> Vec<Act> {
-    let scales = ac.conducts();
+    let scales = ac.conducts(within_s);
     let mut acts = close(state, Position::Line, ac, points);
     acts.extend([
         Act::Query(vec![
             points.source(Device::SmuIn, 0.0, &plan.input),
-            points.capture_all(plan, &scales),
+            points.capture_step(plan, &scales, (0.0, level_v)),
         ]),
         // The output blocks before the step, whatever the level was before: at the next zero of the current.
         Act::Wait(Span::seconds(ac.half_s() + plan.time_constant_s)),
         Act::Query(vec![points.level(Device::SmuIn, level_v)]),
-        Act::Query(vec![points.force_trigger()]),
-        Act::Wait(Span::seconds(scales.record_s) + STORED),
-        Act::Query(vec![
-            points.complete(),
-            points.channel(&scales, DIVIDED_CHANNEL),
-            points.channel(&scales, OUTPUT_CHANNEL),
-        ]),
     ]);
+    acts.extend(recorded(&scales, points));
     acts
 }
 
-/// Returns which polarities conduct in the last period of a record.
-pub fn conducting(ac: &AcPlan, given: &Given) -> Result<Conducting, NotDelivered> {
-    let [divided, clamped] = given.waveforms()?;
-    last_period(ac, [&divided, &clamped]).ok_or(NotDelivered(Device::Digitizer))
+/// Returns the acts that wait for the end of a record and read both channels of the output.
+fn recorded(scales: &Scales, points: &Points) -> [Act; 2] {
+    [
+        Act::Wait(Span::seconds(scales.record_s) + STORED),
+        Act::Query(vec![
+            points.complete(),
+            points.channel(scales, DIVIDED_CHANNEL),
+            points.channel(scales, OUTPUT_CHANNEL),
+        ]),
+    ]
 }
 
-fn last_period(ac: &AcPlan, [divided, clamped]: [&Waveform; 2]) -> Option<Conducting> {
+/// Returns which polarities conduct in the period from `from_s` after the trigger of a record on.
+pub fn conducting(ac: &AcPlan, given: &Given, from_s: f64) -> Result<Conducting, NotDelivered> {
+    let [divided, clamped] = given.waveforms()?;
+    of_period(ac, [&divided, &clamped], from_s).ok_or(NotDelivered(Device::Digitizer))
+}
+
+fn of_period(ac: &AcPlan, [divided, clamped]: [&Waveform; 2], from_s: f64) -> Option<Conducting> {
     let output = Output {
         divided: Channel::of(divided, DIVIDER, 0.0)?,
         clamped: Channel::of(clamped, 1.0, 0.0)?,
@@ -222,10 +239,13 @@ fn last_period(ac: &AcPlan, [divided, clamped]: [&Waveform; 2]) -> Option<Conduc
         on_v: ac.on_v,
     };
     let half = (ac.half_s() / output.divided.step_s) as usize;
-    let count = output.divided.len();
-    let first = count.checked_sub(2 * half)?;
+    let first = output.divided.index(from_s);
+    let last = first + 2 * half;
+    if last > output.divided.len() {
+        return None;
+    }
     let blocked = |sign: f64| {
-        let above = (first..count).filter(|it| sign * output.at(*it) > ac.on_v);
+        let above = (first..last).filter(|it| sign * output.at(*it) > ac.on_v);
         above.count() as f64 > BLOCKED * half as f64
     };
     Some(match (blocked(1.0), blocked(-1.0)) {
@@ -247,11 +267,16 @@ pub fn conclude_conducts(
         return Ok(Next::Planned);
     }
     let of = Parameter::TurnOnVoltage;
-    match (conducting(ac, given)?, shift) {
+    let from_s = if shift == Shift::Late { 0.0 } else { plan.on_s };
+    match (conducting(ac, given, from_s)?, shift) {
         (Conducting::One, Shift::Within | Shift::Beyond) => {
             return Ok(Next::Insert(Stage::Ac(AcStage::Conducts(Shift::Far))));
         }
-        (Conducting::One, Shift::Far | Shift::Late) => state.record.stop(Finding::HalfWave),
+        // Half a period late shows as one polarity, too.
+        (Conducting::One, Shift::Far) => {
+            return Ok(Next::Insert(Stage::Ac(AcStage::Conducts(Shift::Late))));
+        }
+        (Conducting::One, Shift::Late) => state.record.stop(Finding::HalfWave),
         (Conducting::Both, Shift::Within) => {
             let proven = (of, Judgement::Pass);
             state.proven.extend(plan.turn_on_v.map(|_| proven));

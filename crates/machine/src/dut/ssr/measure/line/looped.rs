@@ -24,9 +24,8 @@ use units::{Span, Unit};
 
 /// Least share of the peak current at which a sample counts for the fit of the drop.
 const LEAST: f64 = 0.3;
-/// Time after the control edge at which the drift of the drop begins, s; the next number is the time at which it ends.
-const EARLY_S: f64 = 0.01;
-const LATE_S: f64 = 0.2;
+/// Periods at the end of the record whose mean drop ends the drift.
+pub const LATE: usize = 2;
 /// Share of its range up to which the channel of the drop follows the output.
 const FOLLOWED: f64 = 0.93;
 /// Share of the peak of the current that both polarities reach at least in a whole wave.
@@ -156,16 +155,13 @@ impl<'a> Drops<'a> {
     pub fn read(&self, most_v: f64) -> Option<OnState> {
         let whole = self.whole()?;
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
-        let period_s = 1.0 / self.current.hz;
-        let around = |middle_s: f64| (middle_s - period_s / 2.0, middle_s + period_s / 2.0);
-        // One half of the first period is cold. The period after it is the earliest from which the drift may count.
-        let early = self.peak_v((EARLY_S, EARLY_S + period_s))?;
-        let late = self.peak_v(around(LATE_S))?;
+        let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
+        let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
         let charges = self.charges(whole);
         Some(OnState {
-            peak_v: self.cold_v(Self::peak_v)?,
-            rms_v: self.cold_v(Self::rms_v)?,
-            drift_v: late - early,
+            peak_v: peak.at(0.0),
+            rms_v: rms.at(0.0),
+            drift_v: drift_v(&peaks)?,
             offset_v: self.mean_v(whole),
             distortion_v: self.distortion_v(whole, most_v)?,
             unequal: (charges.0 - charges.1).abs() / (charges.0 + charges.1),
@@ -221,18 +217,37 @@ impl<'a> Drops<'a> {
         }
     }
 
-    /// Returns values of the cold part: what the periods of the record show, carried back to the begin of the current.
-    /// `of` gives the value of the periods between two times.
-    fn cold_v(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<f64> {
+    /// Returns the zero of the current with which the output begins to conduct half cycles, s: after the control edge a
+    /// zero-cross part waits up to half a period, in which no current has warmed it. Less than half of a half cycle at
+    /// the beginning, such as that of a part that fires right before a zero, does not count.
+    fn begins_s(&self) -> Option<f64> {
+        let least_a = LEAST * self.current.amplitude();
+        let flows = (0..self.ampere.len()).find(|it| self.ampere.at(*it).abs() >= least_a)?;
+        Some(
+            self.current
+                .zero_after(self.ampere.time(flows) - self.current.half_s() / 2.0),
+        )
+    }
+
+    /// Returns a value in each period from the begin of the current on; `of` gives it for the time between two instants.
+    fn periods(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<Vec<f64>> {
         let period_s = 1.0 / self.current.hz;
+        let begins_s = self.begins_s()?;
         let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
-        let count = (last_s / period_s).floor() as usize;
+        let count = ((last_s - begins_s) / period_s).floor().max(0.0) as usize;
         let each = (0..count).map(|it| {
-            let from_s = it as f64 * period_s;
+            let from_s = begins_s + it as f64 * period_s;
             of(self, (from_s, from_s + period_s))
         });
-        warming::begin(&each.collect::<Option<Vec<f64>>>()?)
+        each.collect()
     }
+}
+
+/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V, from the drops of its periods:
+/// the first one, whose mean an output has after some 10 ms whatever its time constant, and the last two, around 200 ms.
+fn drift_v(peaks: &[f64]) -> Option<f64> {
+    let (first, last) = (peaks.first()?, peaks.last_chunk::<LATE>()?);
+    Some(last.iter().sum::<f64>() / LATE as f64 - first)
 }
 
 /// Concludes the loop.

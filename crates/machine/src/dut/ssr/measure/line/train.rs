@@ -92,9 +92,10 @@ pub fn walk(
         clamped,
         ..output
     };
-    // The first edge is the trigger, and the period is exact.
+    // The first edge is the trigger, which lies before its sample by half an interval on average; the period is exact.
+    let step_s = output.divided.step_s;
     let pulse = |number: u32| {
-        let rise_s = f64::from(number) * ac.period_s();
+        let rise_s = f64::from(number) * ac.period_s() - step_s / 2.0;
         Pulse {
             rise_s,
             fall_s: rise_s + ac.pulse_s(),
@@ -105,7 +106,7 @@ pub fn walk(
     Some(Walk {
         mains,
         answers: answers.collect(),
-        step_s: output.divided.step_s,
+        step_s,
     })
 }
 
@@ -175,7 +176,8 @@ fn on_found(state: &mut State, plan: &Plan, ac: &AcPlan, walk: &Walk) {
                     accuracy::turn_on_voltage(ac, is_referenced, step_v, (volts.abs(), count));
                 accuracy::scaled(&budget, 1e6 / ac.slope())
             }
-            false => accuracy::line_time(plan, walk, (latest, count)),
+            false if ac.zero_cross => accuracy::line_time(plan, walk, (latest, count)),
+            false => accuracy::from_trigger(plan, walk, (latest, count)),
         };
         state.found([(Parameter::TurnOnTime, latest, us, budget)]);
     }
