@@ -14,7 +14,8 @@ use rusqlite::{Connection, Transaction, params};
 use texts::Lang;
 
 /// Selects the scans that the rig accepted in a run, and the orders that took the last scan back, in order.
-pub(super) const SCANS: &str = "SELECT what ->> 'order' = 'scan', what ->> 'serial', who FROM ordered
+pub(super) const SCANS: &str =
+    "SELECT what ->> 'order' = 'scan', what ->> 'serial', who FROM ordered
     WHERE run_id = ?1 AND refused IS NULL AND what ->> 'order' IN ('scan', 'unscan') ORDER BY id";
 
 /// Selects the runs of a rig that were cut off and have no alarm about dropped scans.

@@ -109,7 +109,12 @@ fn a_chart_keeps_bars_inside_and_escapes_its_text() {
 
 #[test]
 fn a_wide_span_of_values_gets_a_logarithmic_axis() {
-    let bars = |greatest| [("a".to_owned(), Some(0.02)), ("b".to_owned(), Some(greatest))];
+    let bars = |greatest| {
+        [
+            ("a".to_owned(), Some(0.02)),
+            ("b".to_owned(), Some(greatest)),
+        ]
+    };
     let chart = |greatest| Chart::new("t", "ms", vec![0.1], bars(greatest)).with_axis_of_its_span();
     assert!(!chart(0.5).is_logarithmic);
     let wide = chart(20.0);
