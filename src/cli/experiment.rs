@@ -135,7 +135,7 @@ mod tests {
             figure("chamber.first_order", "delay_s", 4.2),
         ];
         let text = tables(&found);
-        let read: toml::Table = text.parse().unwrap();
+        let read: toml::Table = text.parse().expect("TOML");
         assert_eq!(read["chamber"]["gain_k"].as_float(), Some(30.612));
         assert_eq!(read["chamber"]["loss_per_k"].as_float(), Some(0.001_683_2));
         assert_eq!(
