@@ -9,7 +9,7 @@ use crate::dut::ssr::Device as SsrDevice;
 use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut, Points};
 use crate::dut::{Procedure, Recipe};
 use crate::instrument::act::{Job, JobDone, RunnerState};
-use crate::instrument::query::{Delivered, Query, Waveform};
+use crate::instrument::query::{Delivered, Query};
 use crate::rig::image::Image;
 use crate::rig::instruments::Profiles;
 use crate::rig::point::Point;
