@@ -28,7 +28,8 @@ test("the rack takes the place of the machine and of its beams", async () => {
 });
 
 test("curve and sockets follow the batch", async () => {
-  const page = await visit(browser, rig);
+  const page = await visit(browser, rig, { role: "operator" });
+  await page.click("#prompt_choices button");
   await rig.until("the chamber heats", (view) => (view.machine.rack.test?.curve.t_s.length ?? 0) > 10, LONG_S);
   await page.waitForSelector("#air .reference[d^=M]", { state: "attached" });
   await shown(page, "#rack_phase", WORDS["rack_phase-testing"].en);
