@@ -1,7 +1,7 @@
 // The rack of a rig that tests batches: plan of the sockets, and the air with the switchings of each socket.
 
-// Drawing of the air: size, and room for the numbers beside it.
-const AIR = {wide: 640, high: 230, left: 44, below: 24, above: 8};
+// Drawing of the air, pixels: size before the page has given it one, room for the numbers beside it, least distance of numbers.
+const AIR = {wide: 640, high: 230, left: 48, below: 24, above: 8, apartX: 64, apartY: 18};
 
 function showRack() {
   const rack = view.machine?.rack;
@@ -64,12 +64,13 @@ function showAir(test) {
   at("air_reference").textContent = celsiusText(test?.reference_c);
   at("air_rate").textContent = celsiusText(test?.rate_k_per_min);
   at("air_pass").textContent = test?.pass ? test.pass + " / " + test.passes : NONE;
-  at("air").replaceChildren(airDrawing(test));
+  const box = at("air");
+  box.replaceChildren(airDrawing(test, box.clientWidth || AIR.wide, box.clientHeight || AIR.high));
 }
 
-// Draws set point and reference over time, and each switching as a mark on the reference.
-function airDrawing(test) {
-  const {wide, high, left, below, above} = AIR;
+// Draws set point and reference over time, and each switching as a mark on the reference; sizes in pixels.
+function airDrawing(test, wide, high) {
+  const {left, below, above, apartX, apartY} = AIR;
   const svg = drawn("svg", {viewBox: "0 0 " + wide + " " + high, role: "img", "aria-label": word("rack-curve")});
   const {t_s: times, set_c: set, reference_c: air} = test?.curve ?? {t_s: [], set_c: [], reference_c: []};
   if (times.length < 2) return svg;
@@ -82,11 +83,13 @@ function airDrawing(test) {
     svg.append(label);
   };
   const rule = (d) => svg.append(drawn("path", {d, class: "rule"}));
-  for (let c = low; c <= top; c += top - low > 50 ? 20 : 10) {
+  const most = (room, apart) => Math.max(1, room / apart);
+  const degrees = [10, 20, 50].find((it) => (top - low) / it <= most(high - below - above, apartY)) ?? 100;
+  for (let c = Math.ceil(low / degrees) * degrees; c <= top; c += degrees) {
     rule("M" + left + " " + y(c) + "H" + wide);
     say(c + " °C", left - 4, y(c) + 4, "end");
   }
-  const step = [1, 2, 5, 10, 20, 30, 60].find((it) => end / 60 / it < 8) ?? 120;
+  const step = [1, 2, 5, 10, 20, 30, 60].find((it) => end / 60 / it <= most(wide - left, apartX)) ?? 120;
   for (let minute = step; minute * 60 <= end; minute += step) {
     rule("M" + x(minute * 60) + " " + above + "V" + (high - below));
     say(minute + " min", Math.min(wide, x(minute * 60)), high - 6, minute * 60 > .95 * end ? "end" : "middle");
