@@ -176,6 +176,17 @@ pub enum FleetError {
         /// Plants and rigs that there are, the first twenty.
         expected: String,
     },
+    /// A fault of this program ended an attempt to send.
+    #[error(
+        "{target}: a fault of this program ended the sending ({said}). It tries again; the rows stay in the queue. Please \
+         report the log"
+    )]
+    Fault {
+        /// Database.
+        target: String,
+        /// What the program said.
+        said: String,
+    },
     /// There is no schema of this program.
     #[error(
         "{target}: found no schema relayrig, expected one; run `relayrig fleet init` as its owner"
@@ -233,7 +244,10 @@ impl FleetError {
     #[must_use]
     pub const fn passes(&self) -> bool {
         match self {
-            Self::TimeOut { .. } | Self::Database { .. } | Self::History(_) => true,
+            Self::TimeOut { .. }
+            | Self::Database { .. }
+            | Self::Fault { .. }
+            | Self::History(_) => true,
             Self::Url { .. }
             | Self::PasswordFile { .. }
             | Self::Ca { .. }
@@ -246,6 +260,11 @@ impl FleetError {
             | Self::RealRigs { .. }
             | Self::Refused { .. } => false,
         }
+    }
+
+    /// Returns true when the connection broke or could not be made.
+    pub(crate) fn is_broken(&self) -> bool {
+        matches!(self, Self::Database { error, .. } if error.code().is_none() && is_broken(error))
     }
 
     /// Returns the refusal, if the database refuses the file.

@@ -3,7 +3,7 @@
 //! - Each rig keeps its own history. The queue of that file ([`history::outbox`]) says what a database lacks.
 //! - [`mod@push`] sends a batch in one transaction: binary COPY to staging tables, `INSERT ... ON CONFLICT DO NOTHING`, commit;
 //!   then the file confirms it. A batch keeps its name until the database has said whether it has it ([`handshake`]), so
-//!   that every row arrives once whatever dies in between.
+//!   that every row arrives once whatever dies in between. A batch that did not arrive comes again with half of its rows.
 //! - Batches of a file are numbered without gaps and a number exists once. Two programs, a copied file and a file from a
 //!   backup therefore never mix their rows: the second one is refused, with the way out ([`Refusal`]).
 //! - [`Pusher`] does this in a thread of its own; the rig never waits for it.
@@ -22,6 +22,8 @@ mod password;
 mod push;
 mod pusher;
 mod reader;
+mod sender;
+mod session;
 mod setup;
 mod status;
 mod tables;
@@ -33,8 +35,9 @@ pub use error::{FleetError, Refusal, Result};
 pub use handshake::{Facts, Known, Step, next_step};
 pub use link::Link;
 pub use password::{PasswordFile, password_in};
-pub use push::{Pushed, push, start_again, take_over};
+pub use push::{push, start_again, take_over};
 pub use pusher::{Pusher, TargetState, Told};
 pub use reader::{Reader, Rigs};
+pub use session::Pushed;
 pub use setup::{MONTHS_AHEAD, SCHEMA, Setup, set_up};
 pub use status::{Report, report};

@@ -1,25 +1,13 @@
-//! Sends what a database lacks, batch by batch.
+//! Sends what a database lacks; gives a rig to another file.
 
-use crate::copy;
 use crate::error::{FleetError, Refusal, Result};
 use crate::handshake::{Facts, Known, Step, next_step};
 use crate::link::Link;
-use config::{FleetSettings, FleetTarget, SampleChoice};
-use history::outbox::{self, Batch, Outbox, Restart, Target};
+use crate::session::{Pushed, Session};
+use config::{FleetSettings, FleetTarget};
+use history::outbox::{Outbox, Restart, Target};
 use tokio_postgres::Row;
 use tokio_postgres::types::ToSql;
-
-/// Entries of the queue in one batch. A batch of 2,000 parts with 24 measurements each takes the server about a second.
-const ENTRIES: u32 = 2000;
-
-/// What was sent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Pushed {
-    /// Batches that the database has committed.
-    pub batches: u64,
-    /// Parts in them.
-    pub parts: u64,
-}
 
 /// Sends until the database lacks nothing, or until `stop` returns true between two batches.
 ///
@@ -32,23 +20,8 @@ pub async fn push(
     target: &FleetTarget,
     stop: impl Fn() -> bool,
 ) -> Result<Pushed> {
-    let mut link = Link::open(target).await?;
-    let history = shake_hands(&link, outbox, fleet, target).await?;
-    link.step("making staging tables", copy::prepare(&link.client))
-        .await?;
-    let mut pushed = Pushed::default();
-    let mut months = None;
-    while !stop() {
-        let Some(batch) = outbox.prepare(&target.url, ENTRIES, samples(target.samples))? else {
-            break;
-        };
-        ensure_months(&link, &batch, &mut months).await?;
-        send(&mut link, (fleet, history), &batch).await?;
-        outbox.confirm(&target.url, &batch.uuid)?;
-        pushed.batches += 1;
-        pushed.parts += batch.parts.len() as u64;
-    }
-    Ok(pushed)
+    let mut session = Session::open(target).await?;
+    session.send_queue(outbox, fleet, target, stop).await
 }
 
 /// Sends everything again, after the database has lost rows; it keeps what it has.
@@ -105,7 +78,7 @@ pub async fn take_over(
 }
 
 /// Compares file and database; returns the number of the history there.
-async fn shake_hands(
+pub(crate) async fn shake_hands(
     link: &Link,
     outbox: &mut Outbox,
     fleet: &FleetSettings,
@@ -195,82 +168,6 @@ async fn begin(link: &Link, fleet: &FleetSettings, file: &Target) -> Result<i32>
     let values: [&(dyn ToSql + Sync); 5] =
         [&fleet.site, &fleet.rig, &file.identity, &host, &program];
     Ok(link.row(DOING, history, &values).await?.get(0))
-}
-
-/// Makes the partitions for the parts of a batch; `made` is the time span that has them already.
-async fn ensure_months(link: &Link, batch: &Batch, made: &mut Option<(i64, i64)>) -> Result<()> {
-    let times = || batch.parts.iter().map(|it| it.judged_at_us);
-    let (Some(first), Some(last)) = (times().min(), times().max()) else {
-        return Ok(());
-    };
-    if made.is_some_and(|(low, high)| low <= first && last <= high) {
-        return Ok(());
-    }
-    let ensure = "SELECT relayrig.ensure_months($1, $2)";
-    link.row("making partitions", ensure, &[&first, &last])
-        .await?;
-    *made = Some((first, last));
-    Ok(())
-}
-
-/// Sends a batch in one transaction. The number of the batch comes first: it waits for another program that sends the
-/// same number, and fails when that one commits.
-async fn send(
-    link: &mut Link,
-    (fleet, history): (&FleetSettings, i32),
-    batch: &Batch,
-) -> Result<()> {
-    const DOING: &str = "sending a batch";
-    let target = link.target.clone();
-    let work = async {
-        let tx = link.client.transaction().await?;
-        let parts = i32::try_from(batch.parts.len()).unwrap_or(i32::MAX);
-        let clock = std::time::SystemTime::now();
-        tx.execute(
-            "INSERT INTO relayrig.batch (uuid, history_id, number, watermark, parts, rig_clock)
-             VALUES ($1, $2, $3, $4, $5, $6)",
-            &[
-                &batch.uuid,
-                &history,
-                &batch.number,
-                &batch.to,
-                &parts,
-                &clock,
-            ],
-        )
-        .await?;
-        let differing = copy::write(&tx, history, batch).await?;
-        if differing == 0 {
-            tx.commit().await?;
-        }
-        Ok(differing)
-    };
-    let limit = std::time::Duration::from_secs(120);
-    let done = tokio::time::timeout(limit, work).await;
-    let done: std::result::Result<i64, tokio_postgres::Error> =
-        done.map_err(|_| FleetError::TimeOut {
-            target: target.clone(),
-            doing: DOING,
-            seconds: limit.as_secs(),
-        })?;
-    match done.map_err(|error| FleetError::of(&target, DOING, error))? {
-        0 => Ok(()),
-        count => Err(FleetError::Refused {
-            target,
-            refusal: Refusal::RunDiffers {
-                rig: rig(fleet),
-                count,
-            },
-        }),
-    }
-}
-
-const fn samples(choice: SampleChoice) -> outbox::SampleChoice {
-    match choice {
-        SampleChoice::None => outbox::SampleChoice::None,
-        SampleChoice::Rejects => outbox::SampleChoice::Rejects,
-        SampleChoice::All => outbox::SampleChoice::All,
-    }
 }
 
 /// Returns the name of this computer.

@@ -1,9 +1,12 @@
 //! Sends in the background, in a thread of its own for each database. The rig never waits for it.
 
-use crate::push::push;
+use crate::error::Result;
+use crate::sender::Sender;
+use crate::session::Pushed;
 use crate::status::age_s;
 use config::{FleetSettings, FleetTarget};
-use history::outbox::Outbox;
+use history::outbox::Lag;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -93,10 +96,11 @@ impl Pusher {
             stopping: AtomicBool::new(false),
         });
         let start = |place: usize| {
-            let (shared, fleet, db) = (Arc::clone(&shared), fleet.clone(), db.clone());
+            let sender = Sender::new(fleet.clone(), place, db.clone())?;
+            let shared = Arc::clone(&shared);
             let thread = std::thread::Builder::new().name(format!("fleet-{place}"));
             thread.spawn(move || {
-                send_until_the_end(&shared, &fleet, place, &db);
+                send_until_the_end(&shared, sender);
                 *shared.ended.lock().unwrap_or_else(PoisonError::into_inner) += 1;
                 shared.changed.notify_all();
             })
@@ -131,28 +135,18 @@ impl Drop for Pusher {
     }
 }
 
-fn send_until_the_end(shared: &Shared, fleet: &FleetSettings, place: usize, db: &std::path::Path) {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build();
-    let Ok(runtime) =
-        runtime.inspect_err(|error| tracing::error!(%error, "no runtime for sending"))
-    else {
-        return;
-    };
+fn send_until_the_end(shared: &Shared, mut sender: Sender) {
     let mut pause = PAUSE;
     loop {
         let last = shared.is_stopping();
         let before = Instant::now();
         let give_up = || shared.is_stopping() && before.elapsed() > LAST_ROWS;
-        let target = &fleet.targets[place];
-        let sent = Outbox::open(db)
-            .map_err(crate::FleetError::from)
-            .and_then(|mut outbox| {
-                let sent = runtime.block_on(push(&mut outbox, fleet, target, give_up));
-                note(shared, place, &outbox, &sent);
-                sent
-            });
+        let attempt = catch_unwind(AssertUnwindSafe(|| sender.attempt(give_up)));
+        let sent = attempt.unwrap_or_else(|panic| {
+            pause = LONGEST_PAUSE;
+            Err(sender.fault(panic.as_ref()))
+        });
+        note(shared, sender.place, sender.lag(), &sent);
         match sent {
             Ok(_) => pause = PAUSE,
             Err(_) => pause = (pause * 2).min(LONGEST_PAUSE),
@@ -164,18 +158,16 @@ fn send_until_the_end(shared: &Shared, fleet: &FleetSettings, place: usize, db: 
     }
 }
 
-/// Notes the end of an attempt; an error goes to the log when it is a new one.
-fn note(shared: &Shared, place: usize, outbox: &Outbox, sent: &crate::Result<crate::Pushed>) {
+/// Notes the end of an attempt with what the database lacks, if the file says it; logs an error when it is a new one.
+fn note(shared: &Shared, place: usize, lag: Option<Lag>, sent: &Result<Pushed>) {
     let mut states = shared.states();
     let state = &mut states[place];
-    let lag = outbox
-        .known(&state.url)
-        .and_then(|known| known.map(|it| outbox.lag(&it)).transpose());
-    let lag = lag.ok().flatten().unwrap_or_default();
     let was_late = state.is_late();
-    (state.lag_parts, state.lag_s) = (lag.parts, age_s(lag));
+    if let Some(lag) = lag {
+        (state.lag_parts, state.lag_s) = (lag.parts, age_s(lag));
+    }
     if state.is_late() && !was_late {
-        let (url, parts, seconds) = (&state.url, lag.parts, state.lag_s);
+        let (url, parts, seconds) = (&state.url, state.lag_parts, state.lag_s);
         tracing::warn!("fleet: {url} lacks {parts} parts, the oldest for {seconds:.0} s");
     }
     match sent {

@@ -54,7 +54,7 @@ pub async fn report(
     let row = link.row(
         DOING,
         "SELECT (extract(epoch FROM clock_timestamp()) * 1000000)::bigint, (SELECT count(*) FROM relayrig.rig),
-           (SELECT coalesce(sum(parts), 0) FROM relayrig.batch JOIN relayrig.history ON history.id = history_id
+           (SELECT count(*) FROM relayrig.part JOIN relayrig.history ON history.id = part.history_id
             JOIN relayrig.rig ON rig.id = history.rig_id WHERE site = $1 AND rig = $2),
            (SELECT count(*) FROM generate_series(1, 60) AS ahead WHERE to_regclass('relayrig.part' ||
              to_char(now() + ahead * interval '1 month', '_YYYY_MM')) IS NOT NULL)",

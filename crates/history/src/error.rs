@@ -161,6 +161,12 @@ pub enum HistoryError {
     /// A server with the histories of many rigs cannot answer.
     #[error("{0}")]
     Server(ServerError),
+    /// Two programs send this file to the same database.
+    #[error("another program sends this file to {url}: stop one of them")]
+    OtherBatch {
+        /// Database.
+        url: String,
+    },
     /// Only the file of a rig can answer this question.
     #[error(
         "{server} has no answer to this question; ask the history file of the rig (without --from)"

@@ -28,6 +28,8 @@ pub(super) struct Asked<T>(pub T);
 pub(super) const BODY_LIMIT: usize = 16 * 1024;
 /// Longest time that a client may take to send its body.
 pub(super) const BODY_TIME: Duration = Duration::from_secs(10);
+/// The character U+0000 in JSON.
+const NUL: &[u8] = b"\\u0000";
 
 /// JSON body of a request. A `T` that denies unknown fields refuses unknown members.
 #[derive(Debug)]
@@ -136,6 +138,10 @@ impl<T: DeserializeOwned> FromRequest<AppState> for Body<T> {
             return refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, reason.to_owned());
         }
         match timeout(BODY_TIME, to_bytes(request.into_body(), BODY_LIMIT)).await {
+            Ok(Ok(text)) if text.windows(NUL.len()).any(|it| it == NUL) => {
+                let reason = "found the character U+0000, which databases refuse; expected none";
+                refused(StatusCode::BAD_REQUEST, reason.to_owned())
+            }
             Ok(Ok(text)) => Ok(Self(strict::from_slice(&text)?)),
             Ok(Err(_)) => {
                 let reason = format!("expected a body of at most {BODY_LIMIT} bytes");

@@ -2,8 +2,13 @@
 
 use crate::rig::Rig;
 use crate::server::Server;
-use fleet::{SCHEMA, Setup, set_up};
+use fleet::{Pusher, SCHEMA, Setup, TargetState, set_up};
 use history::Store;
+use history::outbox::SampleChoice;
+use std::time::Duration;
+
+/// Longest wait for an attempt of the sender on a busy machine.
+const LONG: Duration = Duration::from_secs(120);
 
 #[tokio::test]
 async fn every_row_of_a_history_arrives_once() {
@@ -151,4 +156,72 @@ async fn retention_waits_for_every_target() {
         20,
         "no number was used twice"
     );
+}
+
+#[tokio::test]
+async fn a_batch_that_did_not_arrive_shrinks() {
+    let server = Server::start();
+    set_up(&server.owner()).await.unwrap();
+    let rig = Rig::new("rig-1");
+    rig.run("A", 40, 1);
+    let (mut outbox, url) = (rig.outbox(), server.owner().url);
+    outbox.target(&url).unwrap();
+    let mut next = || {
+        let batch = outbox
+            .prepare(&url, 2000, SampleChoice::None)
+            .unwrap()
+            .unwrap();
+        (batch.uuid, batch.parts.len())
+    };
+    let (name, all) = next();
+    assert_eq!(all, 40);
+    let sizes = [next(), next()].map(|(again, parts)| {
+        assert_eq!(again, name);
+        parts
+    });
+    assert!(sizes[0] < all && sizes[1] < sizes[0], "{sizes:?}");
+    outbox.confirm(&url, &name).unwrap();
+    outbox.confirm(&url, &name).unwrap();
+    let other = outbox.confirm(&url, "another").unwrap_err().to_string();
+    assert!(other.contains("another program"), "{other}");
+}
+
+#[tokio::test]
+async fn parts_far_apart_make_their_own_months_alone() {
+    let server = Server::start();
+    set_up(&server.owner()).await.unwrap();
+    let partitions = "SELECT count(*) FROM pg_inherits WHERE inhparent = 'relayrig.part'::regclass";
+    let before = server.number(partitions).await;
+    let rig = Rig::new("rig-1");
+    rig.run("A", 3, 1);
+    let file = rusqlite::Connection::open(&rig.db).unwrap();
+    let jumped = "UPDATE part SET judged_at_us = 5 WHERE seq = 1";
+    assert_eq!(file.execute(jumped, []).unwrap(), 1);
+    assert_eq!(rig.push(&server.owner()).await.unwrap().parts, 3);
+    let made = server.number(partitions).await - before;
+    assert!((1..=2).contains(&made), "{made} partitions");
+}
+
+#[tokio::test]
+async fn a_rig_without_new_rows_does_not_connect() {
+    let server = Server::start();
+    set_up(&server.owner()).await.unwrap();
+    let rig = Rig::new("rig-1");
+    rig.run("A", 3, 1);
+    let (tell, told) = std::sync::mpsc::channel();
+    let note = move |states: &[TargetState]| tell.send(states[0].clone()).unwrap_or_default();
+    let _pusher = Pusher::start(
+        &rig.settings(&server.owner()),
+        rig.db.clone(),
+        Box::new(note),
+    );
+    let first = told.recv_timeout(LONG).unwrap();
+    assert_eq!((first.sent_parts, first.last_error), (3, None));
+    drop(server);
+    for _ in 0..2 {
+        assert_eq!(told.recv_timeout(LONG).unwrap().last_error, None);
+    }
+    rig.run("B", 1, 1);
+    let error = told.iter().find_map(|state| state.last_error);
+    assert!(error.is_some_and(|it| it.contains("stay in the queue")));
 }

@@ -3,8 +3,9 @@
 //! - Triggers of schema 15 queue each new row, and each change of a row, once per target, in the transaction that writes
 //!   it. A history without targets queues nothing.
 //! - [`Outbox::prepare`] names the next batch with a UUID and stores this name before anything is sent. A batch that may
-//!   have arrived keeps its name and its end until the target says whether it has it, so that nothing is sent under two
-//!   names.
+//!   have arrived keeps its name until the target says whether it has it, so that nothing is sent under two names. It comes
+//!   again with half of its entries: one that is too long for the link gets through at last. What arrives a second time
+//!   the target drops.
 //! - [`Outbox::confirm`] moves the watermark and removes the queued entries. Call it only after the target has committed.
 //! - Retention leaves runs of which a target lacks rows.
 //!
@@ -21,7 +22,7 @@ pub use batch::{
 };
 pub use restart::Restart;
 
-use super::error::{Doing, Result};
+use super::error::{Doing, HistoryError, Result};
 use super::open;
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::path::Path;
@@ -174,8 +175,20 @@ impl Outbox {
             .doing("reading the last run")
     }
 
+    /// Returns true when the target has every row and no batch is under way; false also for one that is not registered.
+    ///
+    /// # Errors
+    /// Fails when the file cannot be read.
+    pub fn is_sent(&self, url: &str) -> Result<bool> {
+        const SENT: &str = "SELECT EXISTS (SELECT 1 FROM target WHERE url = ?1 AND pending IS NULL
+              AND NOT EXISTS (SELECT 1 FROM outbox WHERE target_id = target.id))";
+        self.connection
+            .query_row(SENT, [url], |row| row.get(0))
+            .doing("reading what a target lacks")
+    }
+
     /// Returns the next batch, at most `entries` entries of the queue; `None` when the target lacks nothing. A batch
-    /// that may have arrived comes again under its own name.
+    /// that may have arrived comes again under its own name, with half of its entries.
     ///
     /// # Errors
     /// Fails when the file cannot be read or written.
@@ -205,15 +218,23 @@ impl Outbox {
         }))
     }
 
-    /// Notes that the target has committed the pending batch.
+    /// Notes that the target has committed the pending batch. Does nothing when another program of this file has noted it
+    /// already.
     ///
     /// # Errors
-    /// Fails when the file cannot be written.
+    /// Fails when the file cannot be written, or when another program has begun another batch.
     pub fn confirm(&mut self, url: &str, batch: &str) -> Result<()> {
         const DOING: &str = "confirming a batch";
         let tx = self.transaction().doing(DOING)?;
         let target = read_target(&tx, url).doing(DOING)?;
-        assert_eq!(target.pending.as_deref(), Some(batch), "another batch");
+        if target.confirmed.as_deref() == Some(batch) {
+            return Ok(());
+        }
+        if target.pending.as_deref() != Some(batch) {
+            return Err(HistoryError::OtherBatch {
+                url: url.to_owned(),
+            });
+        }
         tx.execute(
             "DELETE FROM outbox WHERE target_id = ?1 AND id <= (SELECT pending_to FROM target WHERE id = ?1)",
             [target.id],
@@ -255,29 +276,33 @@ fn read_target(connection: &Connection, url: &str) -> rusqlite::Result<Target> {
         })
 }
 
-/// Returns name and end of the batch to send: the pending one, or a new one that becomes pending.
+/// Returns name and end of the batch to send: the pending one, cut to half, or a new one. It is pending from now on.
 fn named(
     tx: &Transaction<'_>,
     target: &Target,
     entries: u32,
 ) -> rusqlite::Result<Option<(String, i64)>> {
-    if let Some(pending) = &target.pending {
-        let end = "SELECT pending_to FROM target WHERE id = ?1";
-        let to = tx.query_row(end, [target.id], |row| row.get(0))?;
-        return Ok(Some((pending.clone(), to)));
-    }
-    let to: Option<i64> = tx.query_row(
-        "SELECT max(id) FROM (SELECT id FROM outbox WHERE target_id = ?1 ORDER BY id LIMIT ?2)",
-        params![target.id, entries],
-        |row| row.get(0),
-    )?;
+    const LAST: &str =
+        "SELECT max(id) FROM (SELECT id FROM outbox WHERE target_id = ?1 ORDER BY id LIMIT ?2)";
+    let (name, entries) = match &target.pending {
+        Some(pending) => (pending.clone(), half(tx, target)?),
+        None => (uuid(tx)?, i64::from(entries)),
+    };
+    let to: Option<i64> = tx.query_row(LAST, [target.id, entries], |row| row.get(0))?;
     let Some(to) = to else {
         return Ok(None);
     };
-    let name = uuid(tx)?;
     tx.execute(
         "UPDATE target SET pending = ?2, pending_to = ?3 WHERE id = ?1",
         params![target.id, name, to],
     )?;
     Ok(Some((name, to)))
+}
+
+/// Returns half the number of entries in the pending batch, at least 1.
+fn half(tx: &Transaction<'_>, target: &Target) -> rusqlite::Result<i64> {
+    const COUNT: &str = "SELECT count(*) FROM outbox JOIN target ON target.id = target_id
+        WHERE target_id = ?1 AND outbox.id <= pending_to";
+    let entries: i64 = tx.query_row(COUNT, [target.id], |row| row.get(0))?;
+    Ok((entries / 2).max(1))
 }

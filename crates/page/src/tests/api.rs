@@ -144,6 +144,14 @@ async fn a_large_or_malformed_body_is_refused_without_effect() {
 }
 
 #[tokio::test]
+async fn a_text_with_a_nul_is_refused() {
+    let fixture = Fixture::new();
+    let body = r#"{"user":"li\u0000","password":"x"}"#;
+    let answer = fixture.ask(request("POST", "/api/login", None, body)).await;
+    assert!(answer.refused(400).contains("U+0000"));
+}
+
+#[tokio::test]
 async fn an_expired_or_ended_session_orders_nothing() {
     let fixture = Fixture::new();
     let long_ago_us = jiff::Timestamp::now().as_microsecond() - 13 * 3_600_000_000;
