@@ -5,7 +5,7 @@
 //! place, because its clock is the clock of the rig.
 
 use anyhow::Context;
-use bus::Pace;
+use bus::{Pace, Passage};
 use cycle::Lateness;
 use machine::view::HostView;
 use rustix::mm::{MlockAllFlags, mlockall};
@@ -86,6 +86,8 @@ pub struct RigThread {
     keeper: Keeper,
     /// Rights that the system grants the thread; the lateness in it is empty.
     pub rights: HostView,
+    /// How late this computer passes bytes on; measured at real pace.
+    pub passage: Passage,
     own: Option<(oneshot::Sender<()>, Thread<()>)>,
 }
 
@@ -102,6 +104,7 @@ impl RigThread {
                     awaited: mpsc::channel(1).0,
                 },
                 rights: HostView::default(),
+                passage: Passage::default(),
                 own: None,
             });
         }
@@ -128,9 +131,12 @@ impl RigThread {
         let thread = thread.spawn(serve).context("starting the rig's thread")?;
         let rights = rights.recv().context("starting the rig's thread")?;
         log(&rights);
+        let passage = Passage::default();
+        keeper.handle.spawn(passage.clone().measure());
         Ok(Self {
             keeper,
             rights,
+            passage,
             own: Some((stop, thread)),
         })
     }

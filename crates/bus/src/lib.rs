@@ -60,6 +60,7 @@
 //! | `outstanding.rs` | remembers replies that may still arrive late |
 //! | `probation.rs` | remembers addresses whose replies need confirmation |
 //! | `pace.rs` | rig time on tokio's timers, real or virtual |
+//! | `passage.rs` | how late this computer passes bytes on |
 //! | `settings.rs`, `wire.rs` | time-outs, and the time that characters take |
 //! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module, shared log |
 //! | `instrument/` | links to SCPI instruments over TCP, serial ports and GPIB adapters |
@@ -77,6 +78,7 @@ mod log;
 mod meaning;
 mod outstanding;
 mod pace;
+mod passage;
 mod port;
 mod probation;
 mod raw;
@@ -99,6 +101,7 @@ pub use line::{run, run_reopening};
 pub use log::LineLog;
 pub use meaning::{Meaning, meanings};
 pub use pace::Pace;
+pub use passage::Passage;
 pub use port::{
     OpenPort, Port, PortError, from_streams, open_serial, open_serial_with, serial_port,
 };

@@ -1,6 +1,6 @@
-//! How late this computer wakes the cycle: from the deadline of a wait to its end.
+//! How late this computer is: from the deadline of a wait of the cycle to its end, and in passing bytes on.
 
-use bus::Histogram;
+use bus::{Histogram, Passage};
 use machine::rig::wiring::Wiring;
 use machine::view::{Bucket, LatenessView};
 use units::{RigTime, Span};
@@ -19,13 +19,23 @@ pub struct Lateness {
     sum: Span,
     worst: Span,
     window_began: RigTime,
-    /// Worst of the current window, and of the one before.
+    /// Worst of the current window, and of the one before; also of bytes.
     windows: [Span; 2],
+    passage: Passage,
 }
 
 impl Lateness {
+    /// Returns a lateness that counts delays of bytes too, for [`Self::recent`] alone.
+    pub fn with(passage: Passage) -> Self {
+        Self {
+            passage,
+            ..Self::default()
+        }
+    }
+
     /// Counts a wait with the deadline `until` that ended at `now`; ignores one that ended before its deadline.
     pub fn count(&mut self, until: RigTime, now: RigTime) {
+        self.note(self.passage.take_worst(), now);
         if now < until {
             return;
         }
@@ -33,6 +43,10 @@ impl Lateness {
         self.all.add(late);
         self.sum += late;
         self.worst = self.worst.max(late);
+        self.note(late, now);
+    }
+
+    fn note(&mut self, late: Span, now: RigTime) {
         let age = now.since(self.window_began);
         if age > WINDOW {
             let before = if age > WINDOW + WINDOW {
@@ -122,6 +136,15 @@ mod tests {
         let counts: Vec<u64> = view.buckets.iter().map(|it| it.count).collect();
         assert_eq!(counts[..11], [0, 998, 0, 0, 0, 0, 1, 0, 0, 0, 1]);
         assert_eq!(view.sum_ms, 142.8);
+    }
+
+    #[test]
+    fn bytes_that_pass_late_count_as_recent() {
+        let passage = Passage::late_by(Span::ms(40));
+        let mut lateness = Lateness::with(passage);
+        lateness.count(RigTime(1_000), RigTime(900));
+        assert_eq!(lateness.recent(), Span::ms(40));
+        assert_eq!(lateness.view().worst_ms, 0.0, "of waits alone");
     }
 
     #[test]

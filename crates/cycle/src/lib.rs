@@ -47,7 +47,7 @@ pub use lateness::Lateness;
 pub use snapshot::{Snapshot, snapshots};
 pub use traffic::LineEnds;
 
-use bus::{Pace, Reading, Timer};
+use bus::{Pace, Passage, Reading, Timer};
 use converter::Converter;
 pub use event::Event;
 use failures::Failures;
@@ -106,6 +106,8 @@ pub struct CycleLinks {
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Carries snapshots to the screens; `None` on a rig without a screen.
     pub snapshots: Option<mpsc::Sender<Snapshot>>,
+    /// How late this computer passes bytes on; never late in virtual time.
+    pub passage: Passage,
 }
 
 /// How a run of the cycle ended.
@@ -191,6 +193,7 @@ impl Cycle {
     ) -> Self {
         assert_eq!(lines.len(), wiring.lines.len(), "a line without its task");
         let interlocks = wiring.guarded();
+        let lateness = Lateness::with(links.passage.clone());
         Self {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
@@ -222,7 +225,7 @@ impl Cycle {
             worst_age: Span(0),
             refused: None,
             lost_status: None,
-            lateness: Lateness::default(),
+            lateness,
         }
     }
 

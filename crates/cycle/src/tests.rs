@@ -7,7 +7,7 @@ mod standstill;
 
 use super::*;
 use bus::instrument::{Link, serve};
-use bus::{Answer, Request};
+use bus::{Answer, Passage, Request};
 use config::{Folder, Plant, load_recipe};
 use dcon::{Command, Reply};
 use machine::guard::{Actuator, PartSize};
@@ -161,6 +161,7 @@ impl Bench {
             fleet: watch::channel(Vec::new()).1,
             readings: None,
             snapshots: None,
+            passage: Passage::default(),
         };
         let guard = Guard::build(plant.scene.as_ref().unwrap()).unwrap();
         let station = station(&plant, &wiring, &guard, recipe);

@@ -1,4 +1,5 @@
-//! Accuracy of a relay transient against its cost: `cargo bench -p rigsim --bench transient [-- --json]`.
+//! Accuracy of a relay transient against its cost:
+//! `cargo bench -p rigsim --features peers --bench transient [-- --json]`.
 //!
 //! The case is a 12 V operation of the default relay, 8 ms from rest. Each scheme reports the first make and the
 //! last change of NO; its error is the difference from this project's method at a tolerance of 1e-14. Wall time is

@@ -13,7 +13,7 @@ pub(super) struct PushArgs {
     /// Continue as a new epoch of the rig: this file replaces the one that sent before
     #[arg(long)]
     take_over: bool,
-    /// Send everything again, after a database lost rows; it keeps what it has
+    /// Queue everything again and send it, after a database lost rows; it keeps what it has
     #[arg(long, conflicts_with = "take_over")]
     again: bool,
     /// Remove databases that fleet.toml no longer names, so that retention does not wait for them

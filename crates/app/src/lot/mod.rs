@@ -118,6 +118,7 @@ impl LotRunner<'_> {
             fleet: controls.fleet.subscribe(),
             readings: lines.readings.take(),
             snapshots,
+            passage: thread.passage.clone(),
         };
         let ends = std::mem::take(&mut lines.ends);
         let ends = (ends, std::mem::take(&mut lines.instruments));

@@ -1,5 +1,5 @@
-//! Event-driven integration: error-controlled steps that end exactly where a mode changes. Integrators from crates spend
-//! more on events, or miss them; `cargo bench -p rigsim --bench transient` compares.
+//! Event-driven integration: error-controlled steps that end exactly where a mode changes. Integrators of crates spend
+//! more on events, or miss them: `cargo bench -p rigsim --features peers --bench transient` compares them.
 //!
 //! - The flags are constant within a step. After the step the solver compares every gap function with its flag.
 //! - To locate a change it repeats the step with trial lengths (Illinois secant method), so the instant has the full
