@@ -32,6 +32,16 @@ pub async fn push(
     target: &FleetTarget,
     stop: impl Fn() -> bool,
 ) -> Result<Pushed> {
+    let sent = push_batches(outbox, fleet, target, stop).await;
+    sent.map_err(FleetError::while_sending)
+}
+
+async fn push_batches(
+    outbox: &mut Outbox,
+    fleet: &FleetSettings,
+    target: &FleetTarget,
+    stop: impl Fn() -> bool,
+) -> Result<Pushed> {
     let mut link = Link::open(target).await?;
     let history = shake_hands(&link, outbox, fleet, target).await?;
     link.step("making staging tables", copy::prepare(&link.client))
@@ -252,6 +262,7 @@ async fn send(
             target: target.clone(),
             doing: DOING,
             seconds: limit.as_secs(),
+            queued: true,
         })?;
     match done.map_err(|error| FleetError::of(&target, DOING, error))? {
         0 => Ok(()),

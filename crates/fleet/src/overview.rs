@@ -1,0 +1,135 @@
+//! Asks a database what all its rigs do and made, for the page of all rigs.
+//!
+//! - [`watch`] keeps one connection and asks every [`EVERY`], whatever the number of screens; what changes slowly every
+//!   [`DAY_EVERY`]. Each answer is of one moment: a transaction that only reads and ends at once.
+//! - A question looks at the last 36 hours, rig by rig, through the indexes of the partitions; at the last 200 alarms, 50
+//!   calibrations and 100 reference checks of a rig. Its cost does not grow with the age of the database.
+//! - When the database is lost, the last answers stay, with the trouble; the next question connects again.
+
+mod day;
+mod now;
+mod references;
+
+use crate::error::{FleetError, Result};
+use crate::link::Link;
+use config::FleetTarget;
+use history::Moment;
+use history::inquiry::rigs::{Day, Now, Overview, Trouble};
+use history::inquiry::shifts::Shift;
+use jiff::tz::TimeZone;
+use std::time::Duration;
+use tokio::sync::watch::Sender;
+use tokio::time::{Instant, sleep};
+
+const DOING: &str = "asking for the state of the rigs";
+
+/// Pause between two questions.
+pub const EVERY: Duration = Duration::from_secs(5);
+/// Least time between two questions about shifts, reasons and reference parts.
+pub const DAY_EVERY: Duration = Duration::from_secs(60);
+/// Longest time for one statement, seconds.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Time that the overview looks back, µs: a day, and the shift that had begun before it.
+const BACK_US: i64 = 36 * HOUR_US;
+const HOUR_US: i64 = 3_600_000_000;
+
+/// What is to be watched.
+#[derive(Debug, Clone)]
+pub struct Watched {
+    /// Database.
+    pub target: FleetTarget,
+    /// Shifts of the plant; empty when it has none.
+    pub shifts: Vec<Shift>,
+    /// Time zone of the shifts.
+    pub zone: TimeZone,
+}
+
+/// Asks again and again and sends what it learns; ends when every receiver is gone.
+pub async fn watch(watched: &Watched, seen: &Sender<Overview>) {
+    let mut link = None;
+    let mut day_from: Option<Instant> = None;
+    while !seen.is_closed() {
+        let day_is_due = day_from.is_none_or(|it| it.elapsed() >= DAY_EVERY);
+        match ask(watched, &mut link, day_is_due).await {
+            Ok((now, day)) => {
+                if day.is_some() {
+                    day_from = Some(Instant::now());
+                }
+                seen.send_modify(|it| {
+                    if it.trouble.take().is_some() {
+                        tracing::info!(target = it.target, "database reached again");
+                    }
+                    it.now = Some(now);
+                    it.day = day.or_else(|| it.day.take());
+                });
+            }
+            Err(error) => {
+                link = None;
+                note(&error, seen);
+            }
+        }
+        tokio::select! {
+            () = sleep(EVERY) => {}
+            () = seen.closed() => {}
+        }
+    }
+}
+
+/// Notes a failure; it goes to the log when it is a new one.
+fn note(error: &FleetError, seen: &Sender<Overview>) {
+    let text = error.to_string();
+    seen.send_modify(|it| {
+        let before = it.trouble.take();
+        if before.as_ref().is_none_or(|before| before.text != text) {
+            tracing::warn!("fleet: {text}");
+        }
+        it.trouble = Some(Trouble {
+            text,
+            remedy: error.remedy().code(),
+            since: before.map_or_else(|| Moment(jiff::Timestamp::now().as_microsecond()), |it| it.since),
+        });
+    });
+}
+
+/// Asks once, over the connection that there is or a new one.
+async fn ask(
+    watched: &Watched,
+    link: &mut Option<Link>,
+    with_day: bool,
+) -> Result<(Now, Option<Day>)> {
+    let link = match link {
+        Some(link) => link,
+        None => link.insert(connected(&watched.target).await?),
+    };
+    let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
+    link.step(DOING, link.client.batch_execute(begin)).await?;
+    let now = now::ask(link).await?;
+    let day = match with_day {
+        true => Some(day::ask(link, watched, now.at).await?),
+        false => None,
+    };
+    link.step(DOING, link.client.batch_execute("COMMIT")).await?;
+    Ok((now, day))
+}
+
+async fn connected(target: &FleetTarget) -> Result<Link> {
+    let link = Link::open(target).await?.patient(PATIENCE);
+    let settings = "SET jit = off; SET statement_timeout = '18s'";
+    link.step(DOING, link.client.batch_execute(settings)).await?;
+    Ok(link)
+}
+
+/// Asks a database once, over a connection of its own.
+///
+/// # Errors
+/// Fails as [`Link::open`] does.
+pub async fn overview(watched: &Watched) -> Result<Overview> {
+    let (now, day) = ask(watched, &mut None, true).await?;
+    Ok(Overview {
+        target: watched.target.url.clone(),
+        trouble: None,
+        now: Some(now),
+        day,
+    })
+}
