@@ -35,7 +35,11 @@ impl Page {
     fn get(&self, path: &str) -> (u16, Value) {
         let mut stream = TcpStream::connect(&self.address).unwrap();
         let host = &self.address;
-        write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+        write!(
+            stream,
+            "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"
+        )
+        .unwrap();
         let mut answer = String::new();
         stream.read_to_string(&mut answer).unwrap();
         let (head, body) = answer.split_once("\r\n\r\n").unwrap();
@@ -45,7 +49,10 @@ impl Page {
             true => body.lines().skip(1).filter(|it| !is_length(it)).collect(),
             false => body.to_owned(),
         };
-        (status, serde_json::from_str(&body).unwrap_or_else(|_| panic!("{answer}")))
+        (
+            status,
+            serde_json::from_str(&body).unwrap_or_else(|_| panic!("{answer}")),
+        )
     }
 
     /// Waits for an overview that passes `test`.
@@ -93,15 +100,24 @@ fn a_rig_is_followed_down_to_the_raw_reply() {
     let page = Page::start(&workshop);
     let seen = page.until("asked", |it| it["day"].is_object());
     let (now, day) = (&seen["now"]["rigs"][0], &seen["day"]["rigs"][0]);
-    assert_eq!((&now["site"], &now["rig"]), (&"suzhou".into(), &"rig-07".into()));
-    assert_eq!((&now["run"]["lot"], &now["parts_per_hour"]), (&"A".into(), &3.into()), "{seen}");
+    assert_eq!(
+        (&now["site"], &now["rig"]),
+        (&"suzhou".into(), &"rig-07".into())
+    );
+    assert_eq!(
+        (&now["run"]["lot"], &now["parts_per_hour"]),
+        (&"A".into(), &3.into()),
+        "{seen}"
+    );
     assert_eq!(day["counts"]["parts"], 3, "{seen}");
     let shifts = day["shifts"].as_array().unwrap();
     let parts: u64 = shifts.iter().filter_map(|it| it["parts"].as_u64()).sum();
     assert_eq!(parts, 3, "{seen}");
     let (_, parts) = page.get("/rigs/suzhou/rig-07/api/history/query?lot=A");
     let seq = &parts[2]["seq"];
-    let (status, part) = page.get(&format!("/rigs/suzhou/rig-07/api/history/show?lot=A&seq={seq}"));
+    let (status, part) = page.get(&format!(
+        "/rigs/suzhou/rig-07/api/history/show?lot=A&seq={seq}"
+    ));
     assert_eq!(status, 200, "{part}");
     let raw = part[0]["measurements"].as_array().unwrap().iter();
     let raw = raw.flat_map(|it| it["samples"].as_array().unwrap());
@@ -109,7 +125,10 @@ fn a_rig_is_followed_down_to_the_raw_reply() {
     assert!(raw.clone().all(|it| it["raw"].is_string()), "{part}");
     let (status, other) = page.get("/rigs/suzhou/rig-08/api/history/count");
     let reason = other["reason"].as_str().unwrap();
-    assert!(status >= 400 && reason.contains("expected one of suzhou/rig-07"), "{other}");
+    assert!(
+        status >= 400 && reason.contains("expected one of suzhou/rig-07"),
+        "{other}"
+    );
 }
 
 #[test]
@@ -122,11 +141,17 @@ fn a_page_outlives_its_database() {
     let text = lost["trouble"]["text"].as_str().unwrap();
     assert!(text.starts_with(&trial.owner().url), "{text}");
     assert!(text.contains(". ") && !text.contains("queue"), "{text}");
-    assert_eq!(lost["now"]["rigs"][0]["rig"], "rig-07", "the last answer stays");
+    assert_eq!(
+        lost["now"]["rigs"][0]["rig"], "rig-07",
+        "the last answer stays"
+    );
     let (status, refused) = page.get("/rigs/suzhou/rig-07/api/history/count");
     let reason = refused["reason"].as_str().unwrap();
     assert_eq!(status, 503, "{refused}");
-    assert!(reason.contains("Check address, network and server"), "{reason}");
+    assert!(
+        reason.contains("Check address, network and server"),
+        "{reason}"
+    );
     trial.begin().unwrap();
     page.until("back", |it| it["trouble"].is_null());
 }

@@ -53,11 +53,7 @@ impl Reader {
     ///
     /// # Errors
     /// Fails as [`Reader::open`] does.
-    pub fn open_within(
-        target: &FleetTarget,
-        rigs: &Rigs,
-        limit: Option<Duration>,
-    ) -> Result<Self> {
+    pub fn open_within(target: &FleetTarget, rigs: &Rigs, limit: Option<Duration>) -> Result<Self> {
         let runtime = Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| FleetError::Runtime { error })?;
         let (link, scope) = runtime.block_on(async {
@@ -66,7 +62,8 @@ impl Reader {
                 // The server ends a statement first, and says so.
                 link = link.patient(limit + Duration::from_secs(2));
             }
-            link.step(DOING, link.client.batch_execute(&begin(limit))).await?;
+            link.step(DOING, link.client.batch_execute(&begin(limit)))
+                .await?;
             let scope = scope(&link, rigs).await?;
             Ok::<_, FleetError>((link, scope))
         })?;

@@ -31,8 +31,8 @@ use history::{Alarm, Archive, Filter, LotSummary, Moment, OrderChoice, OrderEntr
 use members::{Charting, OfParts, OneParameter, Paging, Runs, TimeSpan, ValueRange, filter};
 use quality::Summary;
 use quality::rules::Rules;
-pub use readers::{Archives, RigName};
 pub(super) use readers::Readers;
+pub use readers::{Archives, RigName};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
@@ -138,7 +138,10 @@ pub(super) struct AuditQuery {
 asked_members!(OpenedQuery, PartQuery, AuditQuery);
 
 /// `GET /api/history/show`.
-pub(super) async fn show(readers: Readers, Asked(which): Asked<PartQuery>) -> JsonResult<Vec<Part>> {
+pub(super) async fn show(
+    readers: Readers,
+    Asked(which): Asked<PartQuery>,
+) -> JsonResult<Vec<Part>> {
     let PartQuery {
         lot,
         seq,

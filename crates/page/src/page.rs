@@ -70,7 +70,12 @@ const FLEET_WORDS: &str = "rigs";
 
 static PAGE: LazyLock<CompressedBody> = LazyLock::new(|| {
     let of_rig = |family: &str| !family.starts_with(FLEET_WORDS);
-    whole(FRAME, SCRIPT, &kinds::words(of_rig), &page_scripts::json(|_| true))
+    whole(
+        FRAME,
+        SCRIPT,
+        &kinds::words(of_rig),
+        &page_scripts::json(|_| true),
+    )
 });
 static POLICY: LazyLock<String> = LazyLock::new(|| policy(SCRIPT));
 static FLEET_PAGE: LazyLock<CompressedBody> = LazyLock::new(|| {

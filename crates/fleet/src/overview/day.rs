@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 /// Plant and name of a rig.
 type Name = (String, String);
 
-/// Asks what each rig made until `at`.
+/// Asks what each rig made until `at`, and a little beyond, because the clock of a rig may be ahead.
 pub(super) async fn ask(link: &Link, watched: &Watched, at: Moment) -> Result<Day> {
-    let since = Moment(at.0 - BACK_US);
-    let shifts = spans(&watched.shifts, &watched.zone, (since, at)).map_err(|error| {
+    let (since, until) = (Moment(at.0 - BACK_US), Moment(at.0 + HOUR_US));
+    let shifts = spans(&watched.shifts, &watched.zone, (since, until)).map_err(|error| {
         FleetError::Shifts {
             target: link.target.clone(),
             why: error.to_string(),
@@ -27,15 +27,15 @@ pub(super) async fn ask(link: &Link, watched: &Watched, at: Moment) -> Result<Da
     let shifts: Vec<ShiftYield> = shifts.into_iter().filter(|it| it.from > since).collect();
     let a_day_ago = at.0 - 24 * HOUR_US;
     let mut edges: Vec<i64> = shifts.iter().flat_map(|it| [it.from.0, it.to.0]).collect();
-    edges.extend([since.0, a_day_ago, at.0]);
+    edges.extend([since.0, a_day_ago, until.0]);
     edges.sort_unstable();
     edges.dedup();
     let counts = counts(link, &edges).await?;
-    let mut reasons = reasons(link, (a_day_ago, at.0)).await?;
+    let mut reasons = reasons(link, (a_day_ago, until.0)).await?;
     let rigs = counts.into_iter().map(|((site, rig), spans)| {
         let within = |from: i64, to: i64| sum(&spans, &edges, (from, to));
         RigDay {
-            counts: within(a_day_ago, at.0),
+            counts: within(a_day_ago, until.0),
             shifts: shifts
                 .iter()
                 .map(|it| ShiftYield {
@@ -43,7 +43,9 @@ pub(super) async fn ask(link: &Link, watched: &Watched, at: Moment) -> Result<Da
                     ..it.clone()
                 })
                 .collect(),
-            reasons: reasons.remove(&(site.clone(), rig.clone())).unwrap_or_default(),
+            reasons: reasons
+                .remove(&(site.clone(), rig.clone()))
+                .unwrap_or_default(),
             site,
             rig,
         }
@@ -51,7 +53,7 @@ pub(super) async fn ask(link: &Link, watched: &Watched, at: Moment) -> Result<Da
     Ok(Day {
         at,
         rigs: rigs.collect(),
-        references: references::ask(link, at).await?,
+        references: references::ask(link, until).await?,
     })
 }
 
@@ -73,7 +75,7 @@ async fn counts(link: &Link, edges: &[i64]) -> Result<BTreeMap<Name, BTreeMap<us
     let edges: Vec<String> = edges.iter().map(i64::to_string).collect();
     let sql = format!(
         "SELECT site, rig, span, verdict, EXISTS (SELECT 1 FROM relayrig.event WHERE kind = 'retest'
-             AND row_id = run_id) AS again, sum(parts)::bigint
+             AND row_id = counted.run_id) AS again, sum(parts)::bigint
          FROM (SELECT history.rig_id, part.run_id, part.span, part.verdict, count(*) AS parts
              FROM relayrig.history CROSS JOIN LATERAL (SELECT it.run_id,
                  width_bucket(it.judged_at_us, ARRAY[{}]::bigint[]) AS span, coalesce(other.verdict, it.verdict) AS verdict
@@ -81,7 +83,7 @@ async fn counts(link: &Link, edges: &[i64]) -> Result<BTreeMap<Name, BTreeMap<us
                  AND NOT EXISTS (SELECT 1 FROM relayrig.part_rejudged AS later WHERE later.part_id = other.part_id
                    AND later.event > other.event)
                WHERE it.history_id = history.id AND it.judged_at_us >= {from} AND it.judged_at_us < {to}
-                 AND it.kind = 'lot') AS part
+                 AND it.kind = 'lot' OFFSET 0) AS part
              WHERE part.verdict <> 'unjudged' GROUP BY 1, 2, 3, 4) AS counted
            JOIN relayrig.rig ON rig.id = rig_id
          GROUP BY 1, 2, 3, 4, 5",
@@ -111,14 +113,16 @@ async fn reasons(link: &Link, (from, to): (i64, i64)) -> Result<BTreeMap<Name, V
         "SELECT site, rig, reason.code, parameter.key, reason.side, count(DISTINCT reason.part_id)
          FROM relayrig.history JOIN relayrig.rig ON rig.id = history.rig_id
            CROSS JOIN LATERAL (SELECT id FROM relayrig.part WHERE history_id = history.id AND judged_at_us >= {from}
-             AND judged_at_us < {to} AND kind = 'lot' AND verdict IN ('fail', 'void')) AS part
+             AND judged_at_us < {to} AND kind = 'lot' AND verdict IN ('fail', 'void') OFFSET 0) AS part
            JOIN relayrig.reason ON reason.part_id = part.id
            LEFT JOIN relayrig.parameter ON parameter.id = reason.parameter_id
          GROUP BY 1, 2, 3, 4, 5"
     );
     let mut all = BTreeMap::<Name, BTreeMap<[String; 2], (u64, Option<f64>)>>::new();
     for row in link.rows(DOING, &sql, &[]).await? {
-        let about = row.get::<_, Option<&str>>(3).and_then(Characteristic::from_key);
+        let about = row
+            .get::<_, Option<&str>>(3)
+            .and_then(Characteristic::from_key);
         let side = row.get::<_, Option<&str>>(4).and_then(Side::from_name);
         let Some(reason) = Reason::stored(row.get(2), about, side, "") else {
             continue;

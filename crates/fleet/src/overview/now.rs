@@ -14,10 +14,13 @@ use tokio_postgres::Row;
 /// The history of each rig that may send.
 const CURRENT: &str = "SELECT DISTINCT ON (rig_id) id, rig_id, host FROM relayrig.history ORDER BY rig_id, epoch DESC";
 
-/// Asks what each rig does.
-pub(super) async fn ask(link: &Link) -> Result<Now> {
+/// Asks what each rig does, as of an instant or of the clock of the database.
+pub(super) async fn ask(link: &Link, as_of: Option<Moment>) -> Result<Now> {
     let clock = "SELECT (extract(epoch FROM clock_timestamp()) * 1000000)::bigint";
-    let at_us: i64 = link.row(DOING, clock, &[]).await?.get(0);
+    let at_us = match as_of {
+        Some(at) => at.0,
+        None => link.row(DOING, clock, &[]).await?.get(0),
+    };
     let states = link.rows(DOING, &states(at_us), &[]).await?;
     let mut alarms = alarms(link).await?;
     let mut calibrations = calibrations(link, at_us).await?;
@@ -76,7 +79,9 @@ fn rig(row: &Row, at_us: i64) -> RigNow {
         host: row.get(3),
         contact: contact.map(Moment),
         silent_s: contact.map(|it| seconds(it, at_us).max(0.0)),
-        lag_s: sent.zip(last_part).map(|(sent, judged)| seconds(judged, sent).max(0.0)),
+        lag_s: sent
+            .zip(last_part)
+            .map(|(sent, judged)| seconds(judged, sent).max(0.0)),
         clock_ahead_s: clock.zip(contact).map(|(clock, at)| seconds(at, clock)),
         run: lot.map(|lot| LatestRun {
             lot,

@@ -21,8 +21,8 @@ const CHECKS: u32 = 100;
 type Reading = (f64, Option<f64>, i64);
 
 /// Asks for the first and the last reading of each reference part and characteristic on each rig.
-pub(super) async fn ask(link: &Link, at: Moment) -> Result<Vec<ReferenceDrift>> {
-    let (oldest, until) = (at.0 - OLDEST_US, at.0);
+pub(super) async fn ask(link: &Link, until: Moment) -> Result<Vec<ReferenceDrift>> {
+    let (oldest, until) = (until.0 - OLDEST_US, until.0);
     let sql = format!(
         "WITH checks AS (SELECT history.id, history.rig_id, checked.at_us, count(*) OVER of_rig AS checks,
              row_number() OVER (of_rig ORDER BY checked.at_us) AS place
@@ -33,7 +33,7 @@ pub(super) async fn ask(link: &Link, at: Moment) -> Result<Vec<ReferenceDrift>> 
          FROM checks JOIN relayrig.rig ON rig.id = checks.rig_id
            CROSS JOIN LATERAL (SELECT id, serial, judged_at_us FROM relayrig.part AS it
              WHERE it.history_id = checks.id AND it.judged_at_us <= checks.at_us AND it.judged_at_us > checks.at_us - {CHECK_US}
-               AND it.judged_at_us > {oldest} AND it.judged_at_us <= {until} AND it.kind = 'golden' AND it.serial IS NOT NULL) AS part
+               AND it.judged_at_us > {oldest} AND it.judged_at_us <= {until} AND it.kind = 'golden' AND it.serial IS NOT NULL OFFSET 0) AS part
            JOIN relayrig.measurement AS m ON m.part_id = part.id AND m.judged_at_us = part.judged_at_us
              AND m.judged_at_us > {oldest} AND m.judged_at_us <= {until} AND m.population = 'golden' AND m.value IS NOT NULL
            JOIN relayrig.parameter ON parameter.id = m.parameter_id

@@ -26,7 +26,10 @@ const REFUSALS: [(u16, &str); 11] = [
         "Too many wrong passwords; `Retry-After` gives the wait in seconds.",
     ),
     (500, "The program failed; the reason says at what."),
-    (503, "Another program locks the history, or the database does not answer; try again."),
+    (
+        503,
+        "Another program locks the history, or the database does not answer; try again.",
+    ),
 ];
 
 /// Returns the document as JSON.

@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::history::RigName;
 use ::history::inquiry::rigs::{Now, Trouble};
 use ::history::{Archive, HistoryError, LotRecord, Moment, PartRecord, Row, Store, snapshot_hash};
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
-use crate::history::RigName;
 use std::path::PathBuf;
 use tower::ServiceExt;
 
@@ -91,13 +91,17 @@ impl Fixture {
 #[tokio::test]
 async fn a_path_chooses_the_rig_whose_history_answers() {
     let fixture = Fixture::new();
-    let (status, count) = fixture.get("/rigs/suzhou/rig%207/api/history/count?lot=A").await;
+    let (status, count) = fixture
+        .get("/rigs/suzhou/rig%207/api/history/count?lot=A")
+        .await;
     assert_eq!((status, count.as_str()), (StatusCode::OK, r#"{"parts":1}"#));
     let (status, other) = fixture.get("/rigs/suzhou/rig%208/api/history/count").await;
     assert_eq!(status, StatusCode::NOT_FOUND, "{other}");
     let (status, all) = fixture.get("/api/history/count").await;
     assert_eq!(status, StatusCode::SERVICE_UNAVAILABLE, "{all}");
-    let (status, unknown) = fixture.get("/rigs/suzhou/rig%207/api/history/count?site=x").await;
+    let (status, unknown) = fixture
+        .get("/rigs/suzhou/rig%207/api/history/count?site=x")
+        .await;
     assert_eq!(status, StatusCode::BAD_REQUEST, "{unknown}");
 }
 
@@ -107,7 +111,10 @@ async fn a_lost_database_leaves_the_last_answer() {
     let overview: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(status, StatusCode::OK);
     assert_eq!(overview["trouble"]["remedy"], "network");
-    assert!(overview["now"]["rigs"].is_array() && overview["day"].is_null(), "{text}");
+    assert!(
+        overview["now"]["rigs"].is_array() && overview["day"].is_null(),
+        "{text}"
+    );
 }
 
 #[tokio::test]
@@ -115,18 +122,26 @@ async fn all_rigs_and_one_rig_have_the_same_page() {
     let fixture = Fixture::new();
     let (status, page) = fixture.get("/").await;
     assert_eq!(status, StatusCode::OK);
-    assert!(page.contains("data-page=\"rigs\"") && page.contains("/page/history-"), "{page}");
+    assert!(
+        page.contains("data-page=\"rigs\"") && page.contains("/page/history-"),
+        "{page}"
+    );
     assert_eq!(fixture.get("/rigs/suzhou/rig%207/").await.1, page);
     let (_, document) = fixture.get("/api/openapi.json").await;
     let document: Value = serde_json::from_str(&document).unwrap();
     let of_part = &document["paths"]["/rigs/{site}/{rig}/api/history/show"]["get"];
-    assert_eq!(of_part["parameters"].as_array().unwrap().len(), 6, "{of_part}");
+    assert_eq!(
+        of_part["parameters"].as_array().unwrap().len(),
+        6,
+        "{of_part}"
+    );
 }
 
 #[tokio::test]
 async fn nothing_on_the_page_changes_a_rig() {
     for route in routes() {
-        let changes = route.method == crate::api::Method::Post && !route.path.ends_with("/quality/grr");
+        let changes =
+            route.method == crate::api::Method::Post && !route.path.ends_with("/quality/grr");
         assert!(!changes && route.role.is_none(), "{}", route.path);
     }
 }

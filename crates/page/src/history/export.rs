@@ -4,8 +4,8 @@
 //! `history prune` does not count such an export as a copy, because the server cannot know whether it arrived.
 
 use super::super::error::{ApiError, blocking};
-use super::{Readers, feed};
 use super::members::{Printed, filter};
+use super::{Readers, feed};
 use crate::answers::{As, Csv, Sheet};
 use crate::asked::Asked;
 use crate::language::Preferred;

@@ -33,7 +33,9 @@ static CODE: LazyLock<String> = LazyLock::new(|| {
 /// Returns the code of a page with this script and of the pages that it fetches later.
 fn code(script: &'static str, fetches: impl Fn(&str) -> bool) -> String {
     let fetched = page_scripts::SOURCES.iter().filter(|it| fetches(it[0]));
-    std::iter::once(script).chain(fetched.map(|it| it[2])).collect()
+    std::iter::once(script)
+        .chain(fetched.map(|it| it[2]))
+        .collect()
 }
 
 /// Returns the texts between `before` and the next `"`.
