@@ -57,7 +57,7 @@ fn drift(
     ((serial, parameter, rig), (checks, readings)): ((String, String, String), (u64, Vec<Reading>)),
 ) -> Option<ReferenceDrift> {
     let (first, last) = (readings.first()?, readings.last()?);
-    (first.2 < last.2).then(|| ReferenceDrift {
+    (first.2 < last.2).then_some(ReferenceDrift {
         serial,
         parameter,
         rig,
