@@ -16,7 +16,7 @@ use crate::error::{FleetError, Result};
 use crate::link::Link;
 use config::FleetTarget;
 use history::Moment;
-use history::inquiry::rigs::{Day, Now, Overview, Trouble};
+use history::inquiry::rigs::{Overview, Trouble};
 use history::inquiry::shifts::Shift;
 use jiff::tz::TimeZone;
 use std::time::Duration;
@@ -50,32 +50,58 @@ pub struct Watched {
 /// Asks again and again and sends what it learns; ends when every receiver is gone.
 pub async fn watch(watched: &Watched, seen: &Sender<Overview>) {
     let mut link = None;
-    let mut day_from: Option<Instant> = None;
+    let mut turns = DayTurns::default();
     while !seen.is_closed() {
-        let day_is_due = day_from.is_none_or(|it| it.elapsed() >= DAY_EVERY);
-        match ask(watched, &mut link, None, day_is_due).await {
-            Ok((now, day)) => {
-                if day.is_some() {
-                    day_from = Some(Instant::now());
-                }
-                seen.send_modify(|it| {
-                    if it.trouble.take().is_some() {
-                        tracing::info!(target = it.target, "database reached again");
-                    }
-                    it.now = Some(now);
-                    it.day = day.or_else(|| it.day.take());
-                });
-            }
-            Err(error) => {
-                link = None;
-                note(&error, seen);
-            }
+        if let Err(error) = turn(watched, &mut link, &mut turns, seen).await {
+            link = None;
+            note(&error, seen);
         }
         tokio::select! {
             () = sleep(EVERY) => {}
             () = seen.closed() => {}
         }
     }
+}
+
+/// Questions about what the rigs made.
+#[derive(Debug, Default)]
+struct DayTurns {
+    /// Time of the last one.
+    asked: Option<Instant>,
+    /// True while the last one has no answer.
+    failed: bool,
+}
+
+/// Asks what the rigs do and, when it is time, what they made. A database that is too slow for the second question still
+/// answers the first; the trouble stays until both have answers.
+async fn turn(
+    watched: &Watched,
+    link: &mut Option<Link>,
+    turns: &mut DayTurns,
+    seen: &Sender<Overview>,
+) -> Result<()> {
+    let link = match link {
+        Some(link) => link,
+        None => link.insert(connected(&watched.target).await?),
+    };
+    let now = snapshot(link, now::ask(link, None)).await?;
+    let at = now.at;
+    seen.send_modify(|it| it.now = Some(now));
+    if turns.asked.is_none_or(|it| it.elapsed() >= DAY_EVERY) {
+        *turns = DayTurns {
+            asked: Some(Instant::now()),
+            failed: true,
+        };
+        let day = snapshot(link, day::ask(link, watched, at)).await?;
+        turns.failed = false;
+        seen.send_modify(|it| it.day = Some(day));
+    }
+    let is_over = !turns.failed && seen.borrow().trouble.is_some();
+    if is_over {
+        tracing::info!(target = watched.target.url, "database reached again");
+        seen.send_modify(|it| it.trouble = None);
+    }
+    Ok(())
 }
 
 /// Notes a failure; it goes to the log when it is a new one.
@@ -97,27 +123,14 @@ fn note(error: &FleetError, seen: &Sender<Overview>) {
     });
 }
 
-/// Asks once, over the connection that there is or a new one, as of an instant or of the clock of the database.
-async fn ask(
-    watched: &Watched,
-    link: &mut Option<Link>,
-    as_of: Option<Moment>,
-    with_day: bool,
-) -> Result<(Now, Option<Day>)> {
-    let link = match link {
-        Some(link) => link,
-        None => link.insert(connected(&watched.target).await?),
-    };
+/// Runs `work` in a transaction that only reads. The connection is lost after an error.
+async fn snapshot<T>(link: &Link, work: impl Future<Output = Result<T>>) -> Result<T> {
     let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
     link.step(DOING, link.client.batch_execute(begin)).await?;
-    let now = now::ask(link, as_of).await?;
-    let day = match with_day {
-        true => Some(day::ask(link, watched, now.at).await?),
-        false => None,
-    };
+    let found = work.await?;
     link.step(DOING, link.client.batch_execute("COMMIT"))
         .await?;
-    Ok((now, day))
+    Ok(found)
 }
 
 async fn connected(target: &FleetTarget) -> Result<Link> {
@@ -133,11 +146,17 @@ async fn connected(target: &FleetTarget) -> Result<Link> {
 /// # Errors
 /// Fails as [`Link::open`] does.
 pub async fn overview(watched: &Watched, as_of: Option<Moment>) -> Result<Overview> {
-    let (now, day) = ask(watched, &mut None, as_of, true).await?;
+    let link = connected(&watched.target).await?;
+    let answers = async {
+        let now = now::ask(&link, as_of).await?;
+        let day = day::ask(&link, watched, now.at).await?;
+        Ok((now, day))
+    };
+    let (now, day) = snapshot(&link, answers).await?;
     Ok(Overview {
         target: watched.target.url.clone(),
         trouble: None,
         now: Some(now),
-        day,
+        day: Some(day),
     })
 }

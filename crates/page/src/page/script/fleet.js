@@ -50,7 +50,7 @@ function calibrationCell(rig) {
 }
 
 function contactText(rig) {
-  const texts = [rig.silent_s === null ? NONE : word("rigs-before") + " " + ago(rig.silent_s)];
+  const texts = [rig.silent_s === null ? NONE : ago(rig.silent_s) + " " + word("rigs-ago")];
   if (rig.lag_s !== null) texts.push(word("rigs-lag") + " " + ago(rig.lag_s));
   if (Math.abs(rig.clock_ahead_s) > 60) texts.push(word("rigs-clock") + " " + rig.clock_ahead_s.toFixed(0) + " s");
   return texts.join(semicolon());
@@ -118,4 +118,4 @@ function showFleet() {
   at("day_as_of").textContent = fleet.day ? word("rigs-day_as_of") + " " + clock(fleet.day.at) : "";
 }
 
-PAGES.rigs = {enter: showFleet, show: showFleet};
+PAGES.rigs = {enter: showFleet};

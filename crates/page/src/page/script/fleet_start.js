@@ -33,7 +33,7 @@ function showLink() {
 function showView() {
   showLink();
   at("as_of").textContent = clock(fleet?.now?.at);
-  PAGES[current]?.show?.();
+  if (current === HOME) showFleet();
 }
 
 // Writes what depends on the language besides the words of the markup.
