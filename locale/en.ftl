@@ -674,6 +674,7 @@ refusal-history_read_only = the history file is read-only
 refusal-not_newest = the revision that this change is based on is not the newest, which is { $newest }; nothing was saved
 refusal-revision_without_reason = give the reason of the change; nothing was saved
 refusal-history_failed = { $said }
+refusal-database_failed = the database does not answer: { $said }
 refusal-member = { $said }
 refusal-nothing_found = { $said }
 refusal-no_such_recipe = { $said }
@@ -1083,6 +1084,56 @@ bus-link = Link
 bus-identity = Identity
 bus-programs = Programs
 bus-failures = Failures
+
+## Page of many rigs
+
+rigs-title = All rigs of a database
+rigs-all = All rigs
+rigs-rig = Rig
+rigs-as_of = As of
+rigs-state = State of the rigs
+rigs-first_pass = First pass, 24 h
+rigs-shift = Shift
+rigs-contact = Last rows
+rigs-ago = ago
+rigs-lot_parts = parts of the lot
+rigs-lag = late by
+rigs-clock = clock off by
+rigs-condition-alarm = alarm
+rigs-condition-silent = no contact
+rigs-condition-late = rows are late
+rigs-condition-testing = testing
+rigs-condition-idle = no lot
+rigs-shifts = Yield and output by shift
+rigs-day = Day
+rigs-output = Parts
+rigs-retest = Passed in retest
+rigs-no_shifts = no parts in the last shifts, or no [[shift]] in fleet.toml
+rigs-references = Drift of reference parts, 30 days
+rigs-change = Change
+rigs-from_others = From the other rigs
+rigs-since = Since
+rigs-shared = on several rigs
+rigs-no_references = no reference part measured twice
+rigs-due = due
+rigs-day_as_of = Shifts, reasons and reference parts as of
+rigs-none = no rig in this database
+rigs-link-fresh = fresh
+rigs-link-waiting = waiting for the database
+rigs-link-no_database = database lost
+rigs-link-lost = page server lost
+rigs-trouble_since = No answer since
+rigs_remedy-network = The database cannot be reached: check address, network and server
+rigs_remedy-password = Check password, tls and ca
+rigs_remedy-access = The database does not let this user in: check user, password and pg_hba.conf
+rigs_remedy-database = There is no such database: create it, or correct its name
+rigs_remedy-role = This user may not read: grant relayrig_reader
+rigs_remedy-room = The database is full: make room there
+rigs_remedy-connections = The database has too many connections: raise max_connections
+rigs_remedy-slow = The database is too slow: see its load
+rigs_remedy-log = The database refuses: see its log
+rigs_remedy-schema = The schema is missing or old: run relayrig fleet init as the owner
+rigs_remedy-settings = A setting is wrong: correct fleet.toml
 
 ## Failed programs of SCPI instruments, by kind
 

@@ -645,6 +645,7 @@ refusal-history_read_only = 历史文件为只读
 refusal-not_newest = 这份修改所依据的版本已不是最新版本（最新为第 { $newest } 版），未保存任何内容
 refusal-revision_without_reason = 未写修改原因，未保存任何内容
 refusal-history_failed = 无法读写历史文件
+refusal-database_failed = 数据库没有应答：{ $said }
 refusal-member = 查询条件“{ $member }”无效
 refusal-nothing_found = 没有符合条件的记录
 refusal-no_such_recipe = 没有配方“{ $recipe }”
@@ -1054,6 +1055,56 @@ bus-link = 链路
 bus-identity = 标识
 bus-programs = 程序次数
 bus-failures = 失败
+
+## Page of many rigs
+
+rigs-title = 数据库中的全部设备
+rigs-all = 全部设备
+rigs-rig = 设备
+rigs-as_of = 截至
+rigs-state = 设备状态
+rigs-first_pass = 24 小时一次合格率
+rigs-shift = 班次
+rigs-contact = 最近数据
+rigs-ago = 前
+rigs-lot_parts = 该批次的工件
+rigs-lag = 延迟
+rigs-clock = 时钟偏差
+rigs-condition-alarm = 报警
+rigs-condition-silent = 无联系
+rigs-condition-late = 数据延迟
+rigs-condition-testing = 测试中
+rigs-condition-idle = 无批次
+rigs-shifts = 各班次产量与合格率
+rigs-day = 日期
+rigs-output = 件数
+rigs-retest = 复测合格
+rigs-no_shifts = 最近班次没有工件，或 fleet.toml 中没有 [[shift]]
+rigs-references = 标准件漂移（30 天）
+rigs-change = 变化
+rigs-from_others = 与其他设备之差
+rigs-since = 起始
+rigs-shared = 多台同时
+rigs-no_references = 没有两次测得的标准件
+rigs-due = 到期
+rigs-day_as_of = 班次、原因与标准件截至
+rigs-none = 数据库中没有设备
+rigs-link-fresh = 最新
+rigs-link-waiting = 等待数据库
+rigs-link-no_database = 数据库中断
+rigs-link-lost = 页面服务器中断
+rigs-trouble_since = 无应答，始于
+rigs_remedy-network = 无法连接数据库：检查地址、网络和服务器
+rigs_remedy-password = 检查密码、tls 和 ca
+rigs_remedy-access = 数据库拒绝该用户：检查用户、密码和 pg_hba.conf
+rigs_remedy-database = 没有该数据库：请创建，或更正名称
+rigs_remedy-role = 该用户无读取权限：请授予 relayrig_reader
+rigs_remedy-room = 数据库已满：请清出空间
+rigs_remedy-connections = 数据库连接过多：请增大 max_connections
+rigs_remedy-slow = 数据库太慢：请查看其负载
+rigs_remedy-log = 数据库拒绝：请查看其日志
+rigs_remedy-schema = 数据结构缺失或过旧：以所有者身份运行 relayrig fleet init
+rigs_remedy-settings = 设置有误：请更正 fleet.toml
 
 ## Failed programs of SCPI instruments, by kind
 

@@ -6,6 +6,7 @@ mod check;
 mod generate;
 mod init;
 mod push;
+mod serve;
 mod status;
 
 use app::exit::Exit;
@@ -19,6 +20,7 @@ use config::{FleetSettings, FleetTarget, load_fleet};
   relayrig fleet init
   relayrig fleet push
   relayrig fleet status --json
+  relayrig fleet serve --listen 127.0.0.1:9000
 
 The password comes from PGPASSWORD or the file that PGPASSFILE names. `serve` and `run` send by themselves.")]
 pub struct FleetArgs {
@@ -43,6 +45,13 @@ enum Command {
     /// Fill a database without real rigs with made-up histories, for trying questions at size
     #[command(after_help = "Example: relayrig fleet generate --parts 4000000 --rigs 200")]
     Generate(generate::GenerateArgs),
+    /// Show all rigs of a database on a web page, which only reads
+    #[command(after_help = "Examples:
+  relayrig fleet serve
+  relayrig fleet serve --listen 0.0.0.0:8443 --tls-cert cert.pem --tls-key key.pem
+
+Exit status: 0 ended, 2 bad input. Without the database the page says why, and goes on when it is back.")]
+    Serve(serve::ServeArgs),
     /// Check that the databases take this history; exit status 1 when one does not
     #[command(
         after_help = "Examples:\n  relayrig fleet check\n  relayrig fleet check --questions 500"
@@ -59,6 +68,7 @@ pub fn run(files: &Files, args: &FleetArgs) -> anyhow::Result<Exit> {
         Command::Push(args) => push::run(files, (&fleet, &targets), args),
         Command::Status(args) => status::run(files, (&fleet, &targets), args),
         Command::Generate(args) => generate::run(&targets, args),
+        Command::Serve(args) => serve::run((&fleet, &targets), args),
         Command::Check(args) => check::run(files, (&fleet, &targets), args),
     };
     super::unless_pipe_closed(done, Exit::Done)

@@ -45,7 +45,11 @@ pub struct PageArgs {
 }
 
 impl PageArgs {
-    fn listener(&self) -> Result<Listener, ListenError> {
+    /// Opens the socket.
+    ///
+    /// # Errors
+    /// Fails as [`Listener::open`] does.
+    pub fn listener(&self) -> Result<Listener, ListenError> {
         let files = self.tls_cert.as_ref().zip(self.tls_key.as_ref());
         let tls = files.map(|(cert, key)| Tls::load(cert, key)).transpose()?;
         Listener::open(self.listen, tls)

@@ -28,6 +28,7 @@
 //! - `storm`: random transactions under all faults of a line; the fingerprint of each value names its origin.
 //! - `tempest`: the whole program under faults, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes while a lot runs.
+//! - `fleet`: the page of all rigs, from a PostgreSQL server of its own.
 //! - [`rows`]: recorded rows of six recipes, five seeds, forty parts each.
 //! - `serials`: serial numbers of parts, and paper and searches with them.
 //! - `serve`: lots started, refused and continued at the page.
@@ -48,6 +49,8 @@ mod doctor;
 #[cfg(feature = "study")]
 mod figures;
 mod first_steps;
+#[cfg(all(feature = "study", feature = "fleet", unix))]
+mod fleet;
 #[cfg(all(feature = "sim", unix))]
 mod full_disk;
 #[cfg(feature = "sim")]

@@ -26,6 +26,26 @@ impl Drop for Served {
     }
 }
 
+/// Returns what lies between a text and a character.
+fn between(text: &str, before: &str, end: char) -> Option<String> {
+    let (_, rest) = text.split_once(before)?;
+    Some(rest.split(end).next()?.to_owned())
+}
+
+/// Reads the piped log of a program up to the address that comes after `before`; returns both.
+pub fn address_of(process: &mut Child, before: &str) -> (String, String) {
+    let mut told = BufReader::new(process.stderr.take().unwrap());
+    let mut text = String::new();
+    let address = loop {
+        assert!(told.read_line(&mut text).unwrap() > 0, "{text}");
+        if let Some(address) = between(&text, before, '/') {
+            break address;
+        }
+    };
+    std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
+    (address, text)
+}
+
 impl Served {
     pub fn start(workshop: &Workshop, words: &str) -> Self {
         let line = format!("serve --listen 127.0.0.1:0 {words}");
@@ -34,20 +54,8 @@ impl Served {
 
     /// Logs in at the page of a program whose log is piped.
     pub fn over(mut process: Child) -> Self {
-        let mut told = BufReader::new(process.stderr.take().unwrap());
-        let mut text = String::new();
-        let after = |text: &str, before: &str, end: char| {
-            let (_, rest) = text.split_once(before)?;
-            Some(rest.split(end).next()?.to_owned())
-        };
-        let address = loop {
-            assert!(told.read_line(&mut text).unwrap() > 0, "{text}");
-            if let Some(address) = after(&text, "page at http://", '/') {
-                break address;
-            }
-        };
-        std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
-        let code = after(&text, "set-up code ", ',').unwrap();
+        let (address, text) = address_of(&mut process, "page at http://");
+        let code = between(&text, "set-up code ", ',').unwrap();
         let mut served = Self {
             process,
             address,

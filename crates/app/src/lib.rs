@@ -47,6 +47,8 @@ pub mod copies;
 pub mod doctor;
 pub mod exit;
 pub mod experiment;
+#[cfg(feature = "fleet")]
+pub mod fleet_page;
 pub mod follower;
 pub mod gauge_study;
 pub mod generate;

@@ -1,8 +1,8 @@
 //! Why a database did not take the rows: each text names the database and what to do.
 
+use crate::remedy::Remedy;
 use history::HistoryError;
 use std::path::PathBuf;
-use tokio_postgres::error::SqlState;
 
 /// Result of this crate.
 pub type Result<T> = std::result::Result<T, FleetError>;
@@ -126,7 +126,7 @@ pub enum FleetError {
     },
     /// The database did not answer in time.
     #[error(
-        "{target}: no answer in {seconds} s while {doing}; check network and server. The rows stay in the queue"
+        "{target}: no answer in {seconds} s while {doing}. {}{}", Remedy::Network.text(), queue(*.queued)
     )]
     TimeOut {
         /// Database.
@@ -135,9 +135,11 @@ pub enum FleetError {
         doing: &'static str,
         /// How long it waited, seconds.
         seconds: u64,
+        /// True while sending: what was not sent stays in the queue.
+        queued: bool,
     },
     /// The database said no, or the connection broke.
-    #[error("{target}: {said} (while {doing}). {remedy}")]
+    #[error("{target}: {said} (while {doing}). {}{}", .remedy.text(), queue(*.queued))]
     Database {
         /// Database.
         target: String,
@@ -146,7 +148,9 @@ pub enum FleetError {
         /// What the database said.
         said: String,
         /// What to do.
-        remedy: &'static str,
+        remedy: Remedy,
+        /// True while sending: what was not sent stays in the queue.
+        queued: bool,
         /// Error of the client library, of which `said` is the text.
         error: tokio_postgres::Error,
     },
@@ -223,6 +227,14 @@ pub enum FleetError {
         /// Why.
         refusal: Refusal,
     },
+    /// The shifts of the plant have no place in the calendar.
+    #[error("{target}: the shifts of fleet.toml cannot be laid out: {why}")]
+    Shifts {
+        /// Database.
+        target: String,
+        /// What is wrong.
+        why: String,
+    },
     /// The history cannot be read or written.
     #[error(transparent)]
     History(#[from] HistoryError),
@@ -235,9 +247,18 @@ impl FleetError {
             target: target.to_owned(),
             doing,
             said: said(&error),
-            remedy: remedy(&error),
+            remedy: Remedy::of(&error),
+            queued: false,
             error,
         }
+    }
+
+    /// Adds to an error of a push that nothing is lost.
+    pub(crate) fn while_sending(mut self) -> Self {
+        if let Self::TimeOut { queued, .. } | Self::Database { queued, .. } = &mut self {
+            *queued = true;
+        }
+        self
     }
 
     /// Returns true when sending again later may help without a person.
@@ -257,6 +278,7 @@ impl FleetError {
             | Self::SchemaOlder { .. }
             | Self::Runtime { .. }
             | Self::NoRig { .. }
+            | Self::Shifts { .. }
             | Self::RealRigs { .. }
             | Self::Refused { .. } => false,
         }
@@ -264,7 +286,13 @@ impl FleetError {
 
     /// Returns true when the connection broke or could not be made.
     pub(crate) fn is_broken(&self) -> bool {
-        matches!(self, Self::Database { error, .. } if error.code().is_none() && is_broken(error))
+        matches!(
+            self,
+            Self::Database {
+                remedy: Remedy::Network,
+                ..
+            }
+        )
     }
 
     /// Returns the refusal, if the database refuses the file.
@@ -274,6 +302,14 @@ impl FleetError {
             Self::Refused { refusal, .. } => Some(refusal),
             _ => None,
         }
+    }
+}
+
+/// Returns the end of a message about rows that were to be sent.
+const fn queue(queued: bool) -> &'static str {
+    match queued {
+        true => ". The rows stay in the queue",
+        false => "",
     }
 }
 
@@ -299,41 +335,4 @@ fn said(error: &tokio_postgres::Error) -> String {
         cause = inner;
     }
     cause.to_string()
-}
-
-/// Returns true when the connection could not be made or broke, and false when both sides could not agree on it.
-fn is_broken(error: &tokio_postgres::Error) -> bool {
-    let mut cause: Option<&dyn std::error::Error> = Some(error);
-    while let Some(it) = cause {
-        if it.is::<std::io::Error>() {
-            return true;
-        }
-        cause = it.source();
-    }
-    error.is_closed()
-}
-
-fn remedy(error: &tokio_postgres::Error) -> &'static str {
-    let Some(code) = error.code() else {
-        return match is_broken(error) {
-            true => "Check address, network and server; the rows stay in the queue",
-            false => {
-                "Check the password (PGPASSWORD, or the file of PGPASSFILE) and `tls` and `ca` of fleet.toml"
-            }
-        };
-    };
-    let of_class = |class: &str| code.code().starts_with(class);
-    if of_class("28") {
-        "Check user and password (PGPASSWORD, or the file of PGPASSFILE) and pg_hba.conf of the server"
-    } else if *code == SqlState::INVALID_CATALOG_NAME {
-        "Create the database, or correct the name in fleet.toml"
-    } else if *code == SqlState::INSUFFICIENT_PRIVILEGE {
-        "Grant the role relayrig_writer (for questions relayrig_reader) to this user; `fleet init` needs the owner"
-    } else if *code == SqlState::DISK_FULL {
-        "The server is full: make room there; the rows stay in the queue"
-    } else if *code == SqlState::TOO_MANY_CONNECTIONS {
-        "Raise max_connections of the server; the rows stay in the queue"
-    } else {
-        "The rows stay in the queue; see the log of the server"
-    }
 }

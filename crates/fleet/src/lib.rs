@@ -8,6 +8,7 @@
 //!   backup therefore never mix their rows: the second one is refused, with the way out ([`Refusal`]).
 //! - [`Pusher`] does this in a thread of its own; the rig never waits for it.
 //! - [`Reader`] answers the questions of a history over all rigs, or some.
+//! - [`overview`] asks what all rigs do and made, for a page that many screens share.
 //! - The schema has remarks, monthly partitions, a role that inserts and one that reads ([`set_up`]).
 //!
 //! The password comes from the environment or a password file and is never logged.
@@ -18,10 +19,12 @@ mod error;
 pub mod generate;
 mod handshake;
 mod link;
+pub mod overview;
 mod password;
 mod push;
 mod pusher;
 mod reader;
+mod remedy;
 mod sender;
 mod session;
 mod setup;
@@ -38,6 +41,7 @@ pub use password::{PasswordFile, password_in};
 pub use push::{push, start_again, take_over};
 pub use pusher::{Pusher, TargetState, Told};
 pub use reader::{Reader, Rigs};
+pub use remedy::Remedy;
 pub use session::Pushed;
 pub use setup::{MONTHS_AHEAD, SCHEMA, Setup, set_up};
 pub use status::{Report, report};

@@ -22,6 +22,8 @@ pub struct Link {
     pub(crate) client: Client,
     /// Database, as messages name it: without password.
     pub(crate) target: String,
+    /// Longest time for one step.
+    patience: Duration,
     /// Task that moves the bytes.
     carrier: JoinHandle<()>,
 }
@@ -54,6 +56,7 @@ impl Link {
         let link = Self {
             client,
             target: name,
+            patience: STEP,
             carrier,
         };
         link.step("setting time limits", link.client.batch_execute(
@@ -79,6 +82,12 @@ impl Link {
             }),
             Some(_) => Ok(link),
         }
+    }
+
+    /// Sets the longest time for one step.
+    pub(crate) const fn patient(mut self, patience: Duration) -> Self {
+        self.patience = patience;
+        self
     }
 
     /// Returns the last step of the schema; `None` when there is none.
@@ -130,7 +139,7 @@ impl Link {
         doing: &'static str,
         work: impl Future<Output = std::result::Result<T, tokio_postgres::Error>>,
     ) -> Result<T> {
-        within(&self.target, doing, STEP, work)
+        within(&self.target, doing, self.patience, work)
             .await?
             .doing(&self.target, doing)
     }
@@ -149,6 +158,7 @@ async fn within<T>(
             target: target.to_owned(),
             doing,
             seconds: limit.as_secs(),
+            queued: false,
         })
 }
 

@@ -20,8 +20,11 @@ pub async fn push(
     target: &FleetTarget,
     stop: impl Fn() -> bool,
 ) -> Result<Pushed> {
-    let mut session = Session::open(target).await?;
-    session.send_queue(outbox, fleet, target, stop).await
+    let sent = async {
+        let mut session = Session::open(target).await?;
+        session.send_queue(outbox, fleet, target, stop).await
+    };
+    sent.await.map_err(FleetError::while_sending)
 }
 
 /// Sends everything again, after the database has lost rows; it keeps what it has.

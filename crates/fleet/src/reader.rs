@@ -1,7 +1,7 @@
 //! Answers the questions of a history from a database with many rigs.
 //!
 //! A reader has one transaction that only reads, so that all answers of a command are of one moment. It needs no more than
-//! the role `relayrig_reader`.
+//! the role `relayrig_reader`. Commands may take long; a page opens a reader for each request, with a limit.
 
 use crate::error::{FleetError, Result};
 use crate::link::Link;
@@ -10,6 +10,7 @@ use crate::value::{Bound, Cell};
 use config::FleetTarget;
 use history::{Receiver, Server, ServerError, Value};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 use tokio_postgres::Row;
 use tokio_postgres::types::ToSql;
@@ -31,7 +32,8 @@ pub struct Rigs {
 /// A connection that answers questions.
 #[derive(Debug)]
 pub struct Reader {
-    runtime: Runtime,
+    /// Absent only while the reader is dropped.
+    runtime: Option<Runtime>,
     link: Link,
     scope: Scope,
     /// Cursors opened so far.
@@ -44,18 +46,29 @@ impl Reader {
     /// # Errors
     /// Fails as [`Link::open`] does, and when the database has no rig of this name.
     pub fn open(target: &FleetTarget, rigs: &Rigs) -> Result<Self> {
+        Self::open_within(target, rigs, None)
+    }
+
+    /// Connects and begins to read, with a limit for each statement and for the pauses between two of them.
+    ///
+    /// # Errors
+    /// Fails as [`Reader::open`] does.
+    pub fn open_within(target: &FleetTarget, rigs: &Rigs, limit: Option<Duration>) -> Result<Self> {
         let runtime = Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| FleetError::Runtime { error })?;
         let (link, scope) = runtime.block_on(async {
-            let link = Link::open(target).await?;
-            let begin = "SET idle_in_transaction_session_timeout = '1h'; SET enable_partitionwise_join = on; SET jit = off; SET work_mem = '64MB';
-                BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
-            link.step(DOING, link.client.batch_execute(begin)).await?;
+            let mut link = Link::open(target).await?;
+            if let Some(limit) = limit {
+                // The server ends a statement first, and says so.
+                link = link.patient(limit + Duration::from_secs(2));
+            }
+            link.step(DOING, link.client.batch_execute(&begin(limit)))
+                .await?;
             let scope = scope(&link, rigs).await?;
             Ok::<_, FleetError>((link, scope))
         })?;
         Ok(Self {
-            runtime,
+            runtime: Some(runtime),
             link,
             scope,
             cursors: AtomicU32::new(0),
@@ -65,8 +78,34 @@ impl Reader {
     fn ask(&self, sql: &str, values: &[Value]) -> Result<Vec<Row>> {
         let bound: Vec<Bound<'_>> = values.iter().map(Bound).collect();
         let bound: Vec<&(dyn ToSql + Sync)> = bound.iter().map(|it| it as _).collect();
-        self.runtime.block_on(self.link.rows(DOING, sql, &bound))
+        let runtime = self.runtime.as_ref();
+        let runtime = runtime.expect("a reader that is not being dropped");
+        runtime.block_on(self.link.rows(DOING, sql, &bound))
     }
+}
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        // A request that a client gave up drops its reader on a thread that must not wait.
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
+}
+
+/// Returns the statements that begin a transaction.
+fn begin(limit: Option<Duration>) -> String {
+    let limits = match limit {
+        None => "SET idle_in_transaction_session_timeout = '1h'".to_owned(),
+        Some(limit) => format!(
+            "SET idle_in_transaction_session_timeout = '60s'; SET statement_timeout = {}",
+            limit.as_millis()
+        ),
+    };
+    format!(
+        "{limits}; SET enable_partitionwise_join = on; SET jit = off; SET work_mem = '64MB';
+         BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"
+    )
 }
 
 impl Server for Reader {

@@ -46,6 +46,10 @@ impl Sender {
     /// Sends what the database lacks, until `stop` returns true. The first attempt connects in any case, so that a wrong
     /// password shows before the first part; later ones connect only for rows.
     pub(crate) fn attempt(&mut self, stop: impl Fn() -> bool) -> Result<Pushed> {
+        self.send_rows(stop).map_err(FleetError::while_sending)
+    }
+
+    fn send_rows(&mut self, stop: impl Fn() -> bool) -> Result<Pushed> {
         let mut outbox = Outbox::open(&self.db)?;
         if let Some(last) = self.succeeded
             && outbox.is_sent(&self.target().url)?

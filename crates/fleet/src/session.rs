@@ -104,6 +104,7 @@ impl Session {
             target: target.clone(),
             doing: DOING,
             seconds: BATCH.as_secs(),
+            queued: true,
         })?;
         match done.map_err(|error| FleetError::of(&target, DOING, error))? {
             0 => Ok(()),

@@ -204,6 +204,7 @@ impl HistoryError {
             Self::Locked { .. } => "history_locked",
             Self::DiskFull { .. } => "disk_full",
             Self::ReadOnly { .. } => "history_read_only",
+            Self::Server(_) => "database_failed",
             _ => "history_failed",
         }
     }

@@ -86,7 +86,7 @@ impl Select {
         Ok(found?.is_some())
     }
 
-    fn add(&mut self, sql: &str, value: impl Into<Value>) {
+    pub fn add(&mut self, sql: &str, value: impl Into<Value>) {
         self.sql.push_str(sql);
         self.values.push(value.into());
     }

@@ -96,7 +96,15 @@ pub(super) const COUNTS: &str =
 impl Archive {
     /// Returns the runs in the order in which the history received them, whatever the clock said; lot, recipe and run of the filter select them.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
+        self.lots_since(filter, None)
+    }
+
+    /// Returns runs as [`Archive::lots`] does, of these only those that were opened at `opened` or later.
+    pub fn lots_since(&self, filter: &Filter, opened: Option<Moment>) -> Result<Vec<LotSummary>> {
         let mut select = filter.runs();
+        if let Some(opened) = opened {
+            select.add(" AND run.opened_at_us >= ?", opened.0);
+        }
         select.sql = format!(
             "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
                run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id,

@@ -1,7 +1,7 @@
 //! The table of all routes, from which the program makes the router, the refusal of unknown members and the OpenAPI
 //! document (`GET /api/openapi.json`). The types of a handler give the document its parameters, body and answer.
 
-mod document;
+pub(super) mod document;
 mod people;
 mod plans;
 
@@ -9,23 +9,24 @@ use super::access::Role;
 use super::answers::Answer;
 use super::asked::pairs;
 use super::error::ApiError;
-use super::history::{self, compared, export, paper, rejudge};
+use super::history::{self, Readers, compared, export, paper, rejudge};
 use super::router::AppState;
 use super::{
     approval, calibration, events, gauge, login, lots, metrics, mimic, orders, page, prompt,
     recipes, trace,
 };
 use axum::Json;
-use axum::extract::Request;
+use axum::extract::{FromRef, Request};
 use axum::handler::Handler;
 use axum::middleware::{Next, from_fn};
 use axum::routing::{MethodRouter, get, post};
 use config::strict::Unreadable;
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
-use utoipa::ToSchema;
 use utoipa::openapi::path::{Parameter, ParameterIn};
+use utoipa::{IntoParams, ToSchema};
 
 /// Description of a route in the OpenAPI document.
 #[derive(Default)]
@@ -106,25 +107,25 @@ pub(super) enum Method {
 }
 
 /// One route.
-pub(super) struct Route {
-    pub path: &'static str,
+pub(super) struct Route<S = AppState> {
+    pub path: Cow<'static, str>,
     pub method: Method,
     pub about: &'static str,
     pub operation: Operation,
     /// Weakest role that may use the route; `None` when it needs no login.
     pub role: Option<Role>,
-    pub handler: MethodRouter<AppState>,
+    pub handler: MethodRouter<S>,
 }
 
 /// Statuses of a route that reads the history: not found, failed, locked.
 const OF_HISTORY: &[u16] = &[404, 500, 503];
 
-impl Route {
+impl<S: Clone + Send + Sync + 'static> Route<S> {
     fn new<T, H: Endpoint<T>>(
         path: &'static str,
         method: Method,
         about: &'static str,
-        (_, handler): (&H, MethodRouter<AppState>),
+        (_, handler): (&H, MethodRouter<S>),
     ) -> Self {
         let operation = H::operation();
         let known = operation.parameters.iter();
@@ -138,7 +139,7 @@ impl Route {
             }
         });
         Self {
-            path,
+            path: path.into(),
             method,
             about,
             operation,
@@ -147,7 +148,7 @@ impl Route {
         }
     }
 
-    fn get<T: 'static, H: Handler<T, AppState> + Endpoint<T>>(
+    pub fn get<T: 'static, H: Handler<T, S> + Endpoint<T>>(
         path: &'static str,
         about: &'static str,
         handler: H,
@@ -156,7 +157,7 @@ impl Route {
         Self::new(path, Method::Get, about, (&handler, routed))
     }
 
-    fn post<T: 'static, H: Handler<T, AppState> + Endpoint<T>>(
+    pub fn post<T: 'static, H: Handler<T, S> + Endpoint<T>>(
         path: &'static str,
         about: &'static str,
         handler: H,
@@ -166,8 +167,17 @@ impl Route {
     }
 
     /// Adds refusals to those that the types of the handler imply.
-    fn refuses(mut self, statuses: &[u16]) -> Self {
+    pub fn refuses(mut self, statuses: &[u16]) -> Self {
         self.operation.refusals.extend(statuses);
+        self
+    }
+
+    /// Returns the route below `prefix`, whose parameters `P` describes.
+    pub fn below<P: IntoParams>(mut self, prefix: &str) -> Self {
+        self.path = format!("{prefix}{}", self.path).into();
+        let own = P::into_params(|| Some(ParameterIn::Path));
+        self.operation.parameters.extend(own);
+        self.operation.refusals.insert(404);
         self
     }
 
@@ -242,13 +252,19 @@ pub(super) fn routes() -> Vec<Route> {
         Route::get("/api/openapi.json", "This document.", openapi),
     ];
     routes.extend(of_history());
+    routes.extend(of_own_history());
     routes.extend(people::routes());
     routes.extend(plans::routes());
     routes.extend(of_recipes());
     routes
 }
 
-fn of_history() -> Vec<Route> {
+/// Returns the routes that a history answers, be it that of a rig or a database with many.
+pub(super) fn of_history<S>() -> Vec<Route<S>>
+where
+    S: Clone + Send + Sync + 'static,
+    Readers: FromRef<S>,
+{
     let routes = [
         Route::get(
             "/api/history/list",
@@ -316,18 +332,6 @@ fn of_history() -> Vec<Route> {
             compared::printed,
         ),
         Route::get(
-            "/api/history/rejudge",
-            "The verdict of every part of the lot by another recipe, then a summary; writes nothing.",
-            rejudge::rejudge,
-        ),
-        Route::get(
-            "/api/history/orders",
-            "The audit of orders: person, order and outcome, in order of time. Logins and changes of people are for \
-             engineers.",
-            history::orders,
-        )
-        .refuses(&[401, 403]),
-        Route::get(
             "/api/history/report/lot",
             "Report of a lot for A4.",
             paper::lot,
@@ -357,6 +361,28 @@ fn of_history() -> Vec<Route> {
             "Parts as a spreadsheet with charts, 100,000 at most.",
             export::xlsx,
         ),
+    ];
+    routes
+        .into_iter()
+        .map(|it| it.refuses(OF_HISTORY))
+        .collect()
+}
+
+/// Returns the routes of the history that also need the recipes or the people of the rig.
+fn of_own_history() -> Vec<Route> {
+    let routes = [
+        Route::get(
+            "/api/history/rejudge",
+            "The verdict of every part of the lot by another recipe, then a summary; writes nothing.",
+            rejudge::rejudge,
+        ),
+        Route::get(
+            "/api/history/orders",
+            "The audit of orders: person, order and outcome, in order of time. Logins and changes of people are for \
+             engineers.",
+            history::orders,
+        )
+        .refuses(&[401, 403]),
     ];
     routes
         .into_iter()

@@ -118,18 +118,18 @@ pub(super) fn pairs(uri: &Uri) -> Result<Vec<(String, String)>, ApiError> {
     Ok(Query::try_from_uri(uri)?.0)
 }
 
-impl<T: Members> FromRequestParts<AppState> for Asked<T> {
+impl<S: Sync, T: Members> FromRequestParts<S> for Asked<T> {
     type Rejection = ApiError;
 
-    async fn from_request_parts(parts: &mut Parts, _: &AppState) -> Result<Self, ApiError> {
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, ApiError> {
         Ok(Self(T::read(&pairs(&parts.uri)?)?))
     }
 }
 
-impl<T: DeserializeOwned> FromRequest<AppState> for Body<T> {
+impl<S: Sync, T: DeserializeOwned> FromRequest<S> for Body<T> {
     type Rejection = ApiError;
 
-    async fn from_request(request: Request, _: &AppState) -> Result<Self, ApiError> {
+    async fn from_request(request: Request, _: &S) -> Result<Self, ApiError> {
         let refused = |status, reason| Err(ApiError::Body { reason, status });
         let media = request.headers().get(CONTENT_TYPE);
         let media = media.and_then(|it| it.to_str().ok()?.split(';').next());
@@ -179,7 +179,7 @@ async fn address(parts: &mut Parts, app: &AppState) -> String {
     origin::address(ConnectInfo::<SocketAddr>::from_request_parts(parts, app).await)
 }
 
-impl Input for State<AppState> {}
+impl<S> Input for State<S> {}
 impl Input for HeaderMap {}
 
 impl<T: Members> Input for Asked<T> {

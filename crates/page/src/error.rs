@@ -63,7 +63,7 @@ pub(super) enum ApiError {
     /// 400 for a malformed question, 404 for a lot, run or part that does not exist, otherwise as [`Self::History`].
     #[error(transparent)]
     Inquiry(#[from] InquiryError),
-    /// 404 without a history file, 503 when it is locked, otherwise 500.
+    /// 404 without a history file, 503 when it is locked or the database does not answer, otherwise 500.
     #[error(transparent)]
     History(#[from] HistoryError),
     /// 404 for an unknown recipe or revision, otherwise 500: a file of the configuration is faulty.
@@ -292,7 +292,7 @@ fn of_access(found: &AccessError) -> StatusCode {
 fn unread(history: &HistoryError) -> StatusCode {
     match history {
         HistoryError::Missing { .. } => StatusCode::NOT_FOUND,
-        HistoryError::Locked { .. } => StatusCode::SERVICE_UNAVAILABLE,
+        HistoryError::Locked { .. } | HistoryError::Server(_) => StatusCode::SERVICE_UNAVAILABLE,
         _ => StatusCode::INTERNAL_SERVER_ERROR,
     }
 }

@@ -18,8 +18,7 @@ use super::access::Role;
 use super::answers::{As, Stream};
 use super::asked::{Asked, members as asked_members};
 use super::error::{ApiError, JsonResult, blocking};
-use super::router::App;
-use super::sessions::require_role;
+use super::sessions::{Sessions, require_role};
 use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
@@ -33,6 +32,7 @@ use members::{Charting, OfParts, OneParameter, Paging, Runs, TimeSpan, ValueRang
 use quality::Summary;
 use quality::rules::Rules;
 pub(super) use readers::Readers;
+pub use readers::{Archives, RigName};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
@@ -41,12 +41,12 @@ pub(super) type Filtered = (Runs, TimeSpan, OfParts, ValueRange, Paging);
 
 /// `GET /api/history/query`.
 pub(super) async fn query(
-    State(app): App,
+    readers: Readers,
     Asked(asked): Asked<Filtered>,
 ) -> Result<As<Stream<Part>>, ApiError> {
     let filter = filter(asked);
     checks::validate(&filter)?;
-    let (archive, place) = app.readers.open().await?;
+    let (archive, place) = readers.open().await?;
     let param = filter.param.clone();
     let known = move || checks::parameters(&archive, param.as_deref()).map(|_| archive);
     let archive = blocking(known).await?;
@@ -69,7 +69,7 @@ pub(super) struct Count {
 
 /// `GET /api/history/count`.
 pub(super) async fn count(
-    State(app): App,
+    readers: Readers,
     Asked(asked): Asked<(Runs, TimeSpan, OfParts, ValueRange)>,
 ) -> JsonResult<Count> {
     let filter = filter(asked);
@@ -79,21 +79,32 @@ pub(super) async fn count(
         let parts = archive.count_parts(&filter)?;
         Ok(Count { parts })
     };
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/list`.
-pub(super) async fn list(State(app): App, Asked(runs): Asked<Runs>) -> JsonResult<Vec<LotSummary>> {
-    let read = move |archive: &Archive| Ok(archive.lots(&filter(runs))?);
-    app.readers.read(read).await.map(Json)
+pub(super) async fn list(
+    readers: Readers,
+    Asked((runs, opened)): Asked<(Runs, OpenedQuery)>,
+) -> JsonResult<Vec<LotSummary>> {
+    let read = move |archive: &Archive| Ok(archive.lots_since(&filter(runs), opened.since)?);
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/yield`.
-pub(super) async fn yields(State(app): App, Asked(span): Asked<TimeSpan>) -> JsonResult<Yield> {
+pub(super) async fn yields(readers: Readers, Asked(span): Asked<TimeSpan>) -> JsonResult<Yield> {
     let since = span.since.unwrap_or(Moment(i64::MIN));
     let until = span.until.unwrap_or(Moment(i64::MAX));
     let read = move |archive: &Archive| Ok(archive.yield_between(since, until)?);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
+}
+
+/// Member of `list` besides the runs.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(super) struct OpenedQuery {
+    /// Only runs that were opened at this time or later: RFC 3339, or local as `2026-11-22`, `today`, `-8h`.
+    #[param(value_type = Option<String>, example = "2026-11-22T00:00:00Z")]
+    since: Option<Moment>,
 }
 
 /// Members of `show`, which select one part.
@@ -124,10 +135,13 @@ pub(super) struct AuditQuery {
     order: Option<String>,
 }
 
-asked_members!(PartQuery, AuditQuery);
+asked_members!(OpenedQuery, PartQuery, AuditQuery);
 
 /// `GET /api/history/show`.
-pub(super) async fn show(State(app): App, Asked(which): Asked<PartQuery>) -> JsonResult<Vec<Part>> {
+pub(super) async fn show(
+    readers: Readers,
+    Asked(which): Asked<PartQuery>,
+) -> JsonResult<Vec<Part>> {
     let PartQuery {
         lot,
         seq,
@@ -145,35 +159,35 @@ pub(super) async fn show(State(app): App, Asked(which): Asked<PartQuery>) -> Jso
         }
         Ok(parts)
     };
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/stats`.
 pub(super) async fn stats(
-    State(app): App,
+    readers: Readers,
     Asked((asked, of)): Asked<((Runs, TimeSpan, OfParts), OneParameter)>,
 ) -> JsonResult<Summary> {
     let filter = filter(asked);
     checks::validate(&filter)?;
     let read =
         move |archive: &Archive| Ok(figures::figures(archive, &of.param, &filter, None)?.summary);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/histogram`.
 pub(super) async fn histogram(
-    State(app): App,
+    readers: Readers,
     Asked((asked, of)): Asked<((Runs, TimeSpan, OfParts), OneParameter)>,
 ) -> JsonResult<Classes> {
     let filter = filter(asked);
     checks::validate(&filter)?;
     let read = move |archive: &Archive| Ok(figures::histogram(archive, &of.param, &filter)?);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/spc`.
 pub(super) async fn spc(
-    State(app): App,
+    readers: Readers,
     Asked((asked, how)): Asked<((Runs, TimeSpan, OfParts), Charting)>,
 ) -> JsonResult<Vec<Charted>> {
     let filter = filter(asked);
@@ -183,25 +197,26 @@ pub(super) async fn spc(
         let charts = charted(archive, &filter, &how)?;
         Ok(charts.into_iter().map(|it| it.last(last)).collect())
     };
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/alarms`.
 pub(super) async fn alarms(
-    State(app): App,
+    readers: Readers,
     Asked(asked): Asked<(Runs, TimeSpan, Paging)>,
 ) -> JsonResult<Vec<Alarm>> {
     let read = move |archive: &Archive| Ok(archive.alarms(&filter(asked))?);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/orders`. Logins and changes of people are for engineers.
 pub(super) async fn orders(
-    State(app): App,
+    readers: Readers,
+    State(sessions): State<Sessions>,
     headers: HeaderMap,
     Asked((asked, AuditQuery { who, order })): Asked<((Runs, TimeSpan, Paging), AuditQuery)>,
 ) -> JsonResult<Vec<OrderEntry>> {
-    let reader = app.shared.sessions.who(&headers).await?;
+    let reader = sessions.who(&headers).await?;
     let of_people = |order: &str| OrderChoice::OF_PEOPLE.contains(&order);
     if order.as_deref().is_some_and(of_people) {
         let reader = reader.as_ref().ok_or(ApiError::NotLoggedIn)?;
@@ -214,7 +229,7 @@ pub(super) async fn orders(
         without_people: !is_engineer,
     };
     let read = move |archive: &Archive| Ok(archive.orders(&filter(asked), &choice)?);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 fn charted(archive: &Archive, filter: &Filter, how: &Charting) -> Result<Vec<Charted>, ApiError> {

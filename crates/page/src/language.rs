@@ -1,7 +1,6 @@
 //! Language of a printed page: that of the request.
 
 use super::api::Input;
-use super::router::AppState;
 use axum::extract::FromRequestParts;
 use axum::http::header::ACCEPT_LANGUAGE;
 use axum::http::request::Parts;
@@ -43,10 +42,10 @@ fn primary(tag: &str) -> &str {
     tag.split('-').next().unwrap_or_default()
 }
 
-impl FromRequestParts<AppState> for Preferred {
+impl<S: Sync> FromRequestParts<S> for Preferred {
     type Rejection = Infallible;
 
-    async fn from_request_parts(parts: &mut Parts, _: &AppState) -> Result<Self, Infallible> {
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Infallible> {
         let header = parts.headers.get(ACCEPT_LANGUAGE);
         let header = header.and_then(|it| it.to_str().ok());
         Ok(Self::of(header.unwrap_or_default()))

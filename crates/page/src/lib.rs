@@ -29,6 +29,8 @@
 //!
 //! Reading needs no login; orders and revisions do (`sessions.rs`). A route refuses every member that it does not take.
 //!
+//! The page of many rigs has routes of its own, which only read (`fleet.rs`).
+//!
 //! Without a certificate the page listens on this computer alone:
 //!
 //! ```
@@ -46,6 +48,7 @@ mod asked;
 mod calibration;
 mod error;
 mod events;
+mod fleet;
 mod gauge;
 mod history;
 mod language;
@@ -67,6 +70,8 @@ mod trace;
 
 pub use approval::approve_with_password;
 use config::Folder;
+pub use fleet::{FleetShared, serve_fleet};
+pub use history::{Archives, RigName};
 use machine::view::{Mimic, OrderRequest};
 pub use orders::WAITING;
 pub use plans::{ListedScene, PlanAnswer, PlanFault, PlanMaker, PlanQuestion};

@@ -39,6 +39,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/link.js"),
     include_str!("page/script/orders.js"),
     include_str!("page/script/login.js"),
+    include_str!("page/script/drawn.js"),
     include_str!("page/script/mimic.js"),
     include_str!("page/script/operator.js"),
     include_str!("page/script/rack.js"),
@@ -46,26 +47,63 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/prompt.js"),
     include_str!("page/script/activity.js"),
     include_str!("page/script/parts.js"),
+    include_str!("page/script/frame.js"),
     include_str!("page/script/start.js"),
 );
 
+/// The page of many rigs, and its scripts in order.
+const FLEET_FRAME: &str = include_str!("page/fleet.html");
+const FLEET_SCRIPT: &str = concat!(
+    include_str!("page/script/shared.js"),
+    include_str!("page/script/texts.js"),
+    include_str!("page/script/pages.js"),
+    include_str!("page/script/drawn.js"),
+    include_str!("page/script/parts.js"),
+    include_str!("page/script/frame.js"),
+    include_str!("page/script/fleet.js"),
+    include_str!("page/script/fleet_start.js"),
+);
+/// Scripts that the page of many rigs fetches later.
+const FLEET_PAGES: [&str; 2] = ["history", "quality"];
+/// Family of the texts of the page of many rigs.
+const FLEET_WORDS: &str = "rigs";
+
 static PAGE: LazyLock<CompressedBody> = LazyLock::new(|| {
-    let page = FRAME
-        .replace("/*look*/", LOOK)
-        .replace("/*words*/", &kinds::words())
-        .replace("/*kinds*/", &kinds::json())
-        .replace("/*scripts*/", &page_scripts::json())
-        .replace("/*script*/", SCRIPT);
-    CompressedBody::new("text/html; charset=utf-8", page)
+    let of_rig = |family: &str| !family.starts_with(FLEET_WORDS);
+    whole(
+        FRAME,
+        SCRIPT,
+        &kinds::words(of_rig),
+        &page_scripts::json(|_| true),
+    )
 });
-static POLICY: LazyLock<String> = LazyLock::new(|| {
+static POLICY: LazyLock<String> = LazyLock::new(|| policy(SCRIPT));
+static FLEET_PAGE: LazyLock<CompressedBody> = LazyLock::new(|| {
+    let scripts = page_scripts::json(|name| FLEET_PAGES.contains(&name));
+    whole(FLEET_FRAME, FLEET_SCRIPT, &kinds::words(|_| true), &scripts)
+});
+static FLEET_POLICY: LazyLock<String> = LazyLock::new(|| policy(FLEET_SCRIPT));
+
+/// Puts the parts of a page into its frame.
+fn whole(frame: &str, script: &str, words: &str, scripts: &str) -> CompressedBody {
+    let page = frame
+        .replace("/*look*/", LOOK)
+        .replace("/*words*/", words)
+        .replace("/*kinds*/", &kinds::json())
+        .replace("/*scripts*/", scripts)
+        .replace("/*script*/", script);
+    CompressedBody::new("text/html; charset=utf-8", page)
+}
+
+/// Returns the content security policy of a page with this script.
+fn policy(script: &str) -> String {
     let hash = |text: &str| BASE64.encode(&Sha256::digest(text));
-    let (look, script) = (hash(LOOK), hash(SCRIPT));
+    let (look, script) = (hash(LOOK), hash(script));
     format!(
         "default-src 'none'; style-src 'sha256-{look}'; script-src 'self' 'sha256-{script}'; connect-src 'self'; \
          img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     )
-});
+}
 
 /// Members of `GET /`, which the script of the page reads.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -106,6 +144,15 @@ pub(super) async fn page(
 ) -> As<Html, impl IntoResponse> {
     let policy = [(CONTENT_SECURITY_POLICY, POLICY.as_str())];
     As::new((policy, PAGE.answer(&headers)))
+}
+
+/// `GET /` of the page of many rigs.
+pub(super) async fn fleet_page(
+    Asked(_options): Asked<PageOptions>,
+    headers: HeaderMap,
+) -> As<Html, impl IntoResponse> {
+    let policy = [(CONTENT_SECURITY_POLICY, FLEET_POLICY.as_str())];
+    As::new((policy, FLEET_PAGE.answer(&headers)))
 }
 
 /// `GET /page/{file}`: fails when no script has this name and hash.

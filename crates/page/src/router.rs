@@ -1,12 +1,13 @@
 //! The router, its shared state and the headers of every answer.
 
+use super::api::Route;
 use super::error::ApiError;
 use super::history::Readers;
-use super::{Shared, api, events};
+use super::{Sessions, Shared, api, events};
 use axum::Json;
 use axum::Router;
 use axum::body::Bytes;
-use axum::extract::{Request, State};
+use axum::extract::{FromRef, Request, State};
 use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
 use axum::middleware::{Next, from_fn};
 use axum::response::Response;
@@ -29,6 +30,18 @@ pub(super) struct AppState {
     pub planning: Arc<Semaphore>,
 }
 
+impl FromRef<AppState> for Readers {
+    fn from_ref(app: &AppState) -> Self {
+        app.readers.clone()
+    }
+}
+
+impl FromRef<AppState> for Sessions {
+    fn from_ref(app: &AppState) -> Self {
+        app.shared.sessions.clone()
+    }
+}
+
 /// Extractor by which a route receives [`AppState`].
 pub(super) type App = State<AppState>;
 
@@ -36,7 +49,7 @@ pub(super) type App = State<AppState>;
 pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
     let (publisher, events) = watch::channel(Bytes::new());
     let app = AppState {
-        readers: Readers::new(shared.db.clone()),
+        readers: Readers::new(Arc::new(shared.db.clone())),
         shared,
         ended,
         streams: Arc::default(),
@@ -45,13 +58,17 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
     };
     let (view, streams) = (app.shared.view.clone(), Arc::clone(&app.streams));
     tokio::spawn(events::publish(view, publisher, streams));
-    let routes = api::routes().into_iter();
+    routed(api::routes()).with_state(app)
+}
+
+/// Returns the router of some routes, with the refusals and headers that all have.
+pub(super) fn routed<S: Clone + Send + Sync + 'static>(routes: Vec<Route<S>>) -> Router<S> {
     routes
-        .fold(Router::new(), |all, it| all.route(it.path, it.handler))
+        .into_iter()
+        .fold(Router::new(), |all, it| all.route(&it.path, it.handler))
         .fallback(no_such_route)
         .method_not_allowed_fallback(wrong_method)
         .layer(from_fn(default_headers))
-        .with_state(app)
 }
 
 /// `GET /api/view`.

@@ -52,16 +52,28 @@ const REFUSED: Duration = Duration::from_millis(100);
 trait Stream: AsyncRead + AsyncWrite + Unpin + Send {}
 impl<T: AsyncRead + AsyncWrite + Unpin + Send> Stream for T {}
 
-/// Serves `listener` until `ended` turns true or loses its sender, then at most [`GRACE`] longer.
+/// Serves the page of a rig at `listener` until `ended` turns true or loses its sender, then at most [`GRACE`] longer.
 pub async fn serve(
     listener: TcpListener,
     tls: Option<Tls>,
     shared: Shared,
     ended: watch::Receiver<bool>,
 ) {
+    let sessions = Some(shared.sessions.clone());
+    let router = router(shared, ended.clone());
+    serve_routes(listener, tls, (router, sessions), ended).await;
+}
+
+/// Serves routes, as [`serve`] does; without sessions all clients are anonymous.
+pub(super) async fn serve_routes(
+    listener: TcpListener,
+    tls: Option<Tls>,
+    (router, sessions): (Router, Option<Sessions>),
+    ended: watch::Receiver<bool>,
+) {
     let server = Server {
-        sessions: shared.sessions.clone(),
-        router: router(shared, ended.clone()),
+        sessions,
+        router,
         tls,
         ended: ended.clone(),
     };
@@ -95,7 +107,7 @@ pub async fn serve(
 #[derive(Debug, Clone)]
 struct Server {
     router: Router,
-    sessions: Sessions,
+    sessions: Option<Sessions>,
     tls: Option<Tls>,
     ended: watch::Receiver<bool>,
 }
@@ -157,8 +169,11 @@ impl Server {
     ) -> Result<Response<Body>, Infallible> {
         place.rise(Rank::Anonymous);
         let token = token(request.headers());
-        if place.rank() < Rank::Session && *checked.lock().await != token {
-            match self.sessions.who(request.headers()).await {
+        if let Some(sessions) = &self.sessions
+            && place.rank() < Rank::Session
+            && *checked.lock().await != token
+        {
+            match sessions.who(request.headers()).await {
                 Ok(Some(_)) => place.rise(Rank::Session),
                 Ok(None) | Err(_) => *checked.lock().await = token,
             }

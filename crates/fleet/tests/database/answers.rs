@@ -2,7 +2,7 @@
 
 use crate::rig::Rig;
 use crate::server::Server;
-use config::{Folder, load_recipe};
+use config::{FleetTarget, Folder, TlsChoice, load_recipe};
 use fleet::differential::compare;
 use fleet::{Reader, Rigs, set_up};
 use history::inquiry::shifts::{Shift, by_shift};
@@ -102,6 +102,21 @@ fn an_unknown_rig_is_refused_with_those_there_are() {
     assert!(
         refused.contains("found no rig suzhou/rig-9, expected one of suzhou/rig-1, suzhou/rig-2"),
         "{refused}"
+    );
+}
+
+#[test]
+fn a_question_that_fails_speaks_of_no_queue() {
+    let nowhere = FleetTarget {
+        url: "postgres://office@127.0.0.1:1/relayrig".to_owned(),
+        tls: TlsChoice::Off,
+        ..FleetTarget::default()
+    };
+    let refused = Reader::open(&nowhere, &Rigs::default()).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "postgres://office@127.0.0.1:1/relayrig: Connection refused (os error 111) (while connecting). Check address, \
+         network and server"
     );
 }
 

@@ -6,6 +6,7 @@
 
 mod answers;
 mod once;
+mod overview;
 mod plans;
 mod proxy;
 mod refusals;

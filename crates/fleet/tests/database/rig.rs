@@ -14,7 +14,7 @@ use machine::station::trouble::Alarm;
 use std::path::PathBuf;
 
 /// Judgement of the first part: 2026-01-31T23:59:00Z, so that parts lie in two months.
-const BEGIN_US: i64 = 1_769_903_940_000_000;
+pub const BEGIN_US: i64 = 1_769_903_940_000_000;
 
 /// A rig with a history of its own.
 pub struct Rig {
@@ -152,6 +152,37 @@ impl Rig {
         rows.iter()
             .for_each(|row| store.record(std::slice::from_ref(row)).unwrap());
         store.close_lot(lot, at(44)).unwrap();
+    }
+
+    /// Measures the reference part G-1 in a run of a lot, with a result of the check a second later.
+    pub fn reference(&self, lot: &str, seq: u64, volts: f64) {
+        let mut store = Store::open(&self.db).unwrap();
+        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
+        let record = LotRecord {
+            lot: lot.to_owned(),
+            recipe: "jzc-22f-012".to_owned(),
+            recipe_hash: snapshot_hash(&recipe_snapshot),
+            recipe_snapshot,
+            opened_at_us: BEGIN_US,
+            ..LotRecord::default()
+        };
+        store.begin_lot(&record).unwrap();
+        let mut golden = PartRecord {
+            kind: "golden".to_owned(),
+            serial: Some("G-1".to_owned()),
+            ..part(lot, seq, 1)
+        };
+        golden.measurements[0].value = Some(volts);
+        let check = ReferenceCheckRecord {
+            lot: lot.to_owned(),
+            at_us: at(seq + 1),
+            text: "G-1".to_owned(),
+            failure: None,
+        };
+        store
+            .record(&[Row::Part(golden), Row::ReferenceCheck(check)])
+            .unwrap();
+        store.close_lot(lot, at(seq + 2)).unwrap();
     }
 
     /// Returns the settings of the rig.

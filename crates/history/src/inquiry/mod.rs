@@ -12,6 +12,7 @@
 //! | use of the time of a lot (OEE) | [`use_of_time`] |
 //! | calibrations with their due dates, reference parts | [`instruments`] |
 //! | verdicts of another recipe on a lot | [`rejudge`] |
+//! | what the rigs of a database do and made | [`rigs`] |
 //! | all parts of a filter as CSV or spreadsheet | [`export`] |
 //!
 //! An inquiry combines rows of the history with the arithmetic of crate `quality`, so page, paper and `--json` show the
@@ -28,6 +29,7 @@ pub mod instruments;
 pub mod paper;
 pub mod pareto;
 pub mod rejudge;
+pub mod rigs;
 pub mod shifts;
 mod use_of_time;
 

@@ -107,7 +107,7 @@ pub fn by_code(alarms: &[Alarm]) -> Vec<Ranked> {
 }
 
 /// Returns the names of a reason, without the figures that differ from part to part.
-fn names(reason: &Reason) -> [String; 2] {
+pub fn names(reason: &Reason) -> [String; 2] {
     let detail = match reason.code {
         Code::Interrupted | Code::Unclassified => reason.detail.clone(),
         Code::OutsideLimit(_)
@@ -124,7 +124,8 @@ fn names(reason: &Reason) -> [String; 2] {
     [Lang::En, Lang::Zh].map(|lang| reason.short(lang))
 }
 
-fn ranked(counts: BTreeMap<[String; 2], (u64, Option<f64>)>) -> Vec<Ranked> {
+/// Ranks counts by name, English and Chinese, with the time for which an alarm was active, s.
+pub fn ranked(counts: BTreeMap<[String; 2], (u64, Option<f64>)>) -> Vec<Ranked> {
     let all: u64 = counts.values().map(|(n, _)| n).sum();
     let mut counts: Vec<_> = counts.into_iter().collect();
     counts.sort_by_key(|(_, (n, _))| std::cmp::Reverse(*n));

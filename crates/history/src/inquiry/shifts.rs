@@ -9,6 +9,7 @@ use jiff::tz::TimeZone;
 use jiff::{Span, Timestamp};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
+use utoipa::ToSchema;
 
 /// Longest time span, days.
 const LONGEST: i32 = 400;
@@ -23,7 +24,7 @@ pub struct Shift {
 }
 
 /// Parts of a shift.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ShiftYield {
     /// Day on which the shift begins, `2026-11-22`.
     pub day: String,
@@ -83,7 +84,10 @@ pub fn by_shift(
 }
 
 /// Returns every shift within the time span, without counts, in order of time.
-fn spans(shifts: &[Shift], zone: &TimeZone, span: (Moment, Moment)) -> Result<Vec<ShiftYield>> {
+///
+/// # Errors
+/// Fails for a time span over [`LONGEST`] days.
+pub fn spans(shifts: &[Shift], zone: &TimeZone, span: (Moment, Moment)) -> Result<Vec<ShiftYield>> {
     let mut all = Vec::new();
     for day in days(span, zone)? {
         for shift in shifts {

@@ -26,17 +26,20 @@ const REFUSALS: [(u16, &str); 11] = [
         "Too many wrong passwords; `Retry-After` gives the wait in seconds.",
     ),
     (500, "The program failed; the reason says at what."),
-    (503, "The history is locked by another program; try again."),
+    (
+        503,
+        "Another program locks the history, or the database does not answer; try again.",
+    ),
 ];
 
 /// Returns the document as JSON.
-pub(super) fn of(routes: Vec<Route>) -> Value {
+pub(in super::super) fn of<S>(routes: Vec<Route<S>>) -> Value {
     let mut shared = Operation::default();
     let refusal = shared.schema_of::<Refusal>();
     let mut paths = Map::new();
     for route in routes {
         paths.insert(
-            route.path.to_owned(),
+            route.path.to_string(),
             json!({route.method.word(): operation(&route)}),
         );
         shared.keep(route.operation.schemas);
@@ -68,7 +71,7 @@ pub(super) fn of(routes: Vec<Route>) -> Value {
     })
 }
 
-fn operation(route: &Route) -> Value {
+fn operation<S>(route: &Route<S>) -> Value {
     let it = &route.operation;
     let (media, schema) = &it.answer;
     let mut responses = Map::new();
@@ -100,7 +103,7 @@ fn operation(route: &Route) -> Value {
 }
 
 /// Returns the method and the words of the path as one name: `getHistoryReportLot`.
-fn id(route: &Route) -> String {
+fn id<S>(route: &Route<S>) -> String {
     let words = route
         .path
         .trim_start_matches("/api")

@@ -2,13 +2,12 @@
 //! and alarms, the most frequent first.
 
 use super::super::error::{ApiError, JsonResult};
-use super::super::router::App;
+use super::Readers;
 use super::members::{OneParameter, Printed, Runs, TimeSpan, filter};
 use super::paper::{Page, page};
 use crate::asked::{Asked, members};
 use crate::language::Preferred;
 use axum::Json;
-use axum::extract::State;
 use history::inquiry::comparison::{Comparison, compare};
 use history::inquiry::pareto::{Ranked, Rejects, alarms, rejects};
 use history::inquiry::{InquiryError, paper};
@@ -37,20 +36,20 @@ fn compared(archive: &Archive, of: &OneParameter, lots: &OfLots) -> Result<Compa
 
 /// `GET /api/history/compare`.
 pub(crate) async fn lots(
-    State(app): App,
+    readers: Readers,
     Asked((of, lots)): Asked<(OneParameter, OfLots)>,
 ) -> JsonResult<Comparison> {
     let read = move |archive: &Archive| compared(archive, &of, &lots);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/report/comparison`.
 pub(crate) async fn printed(
-    State(app): App,
+    readers: Readers,
     preferred: Preferred,
     Asked((of, lots, printed)): Asked<(OneParameter, OfLots, Printed)>,
 ) -> Result<Page, ApiError> {
-    page(app, move |archive| {
+    page(&readers, move |archive| {
         let on = paper::paper_of(archive, &Filter::default(), preferred.unless(printed.lang))?;
         Ok(comparison(&on, &compared(archive, &of, &lots)?))
     })
@@ -59,18 +58,18 @@ pub(crate) async fn printed(
 
 /// `GET /api/history/rejects`.
 pub(crate) async fn reasons(
-    State(app): App,
+    readers: Readers,
     Asked(asked): Asked<(Runs, TimeSpan)>,
 ) -> JsonResult<Rejects> {
     let read = move |archive: &Archive| Ok(rejects(archive, &filter(asked), 0)?);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/alarm-counts`.
 pub(crate) async fn alarm_counts(
-    State(app): App,
+    readers: Readers,
     Asked(asked): Asked<(Runs, TimeSpan)>,
 ) -> JsonResult<Vec<Ranked>> {
     let read = move |archive: &Archive| Ok(alarms(archive, &filter(asked))?);
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }

@@ -4,13 +4,11 @@
 //! `history prune` does not count such an export as a copy, because the server cannot know whether it arrived.
 
 use super::super::error::{ApiError, blocking};
-use super::super::router::App;
-use super::feed;
 use super::members::{Printed, filter};
+use super::{Readers, feed};
 use crate::answers::{As, Csv, Sheet};
 use crate::asked::Asked;
 use crate::language::Preferred;
-use axum::extract::State;
 use axum::http::HeaderName;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::IntoResponse;
@@ -43,12 +41,12 @@ const XLSX: Saved = [
 
 /// `GET /api/history/export.csv`.
 pub(crate) async fn csv(
-    State(app): App,
+    readers: Readers,
     Asked(asked): Asked<super::Filtered>,
 ) -> Result<As<Csv>, ApiError> {
     let filter = filter(asked);
     checks::validate(&filter)?;
-    let (archive, place) = app.readers.open().await?;
+    let (archive, place) = readers.open().await?;
     let asked = filter.clone();
     let known = move || {
         checks::known_runs(&archive, &asked)?;
@@ -64,7 +62,7 @@ pub(crate) async fn csv(
 
 /// `GET /api/history/export.xlsx`.
 pub(crate) async fn xlsx(
-    State(app): App,
+    readers: Readers,
     preferred: Preferred,
     Asked((asked, printed)): Asked<(super::Filtered, Printed)>,
 ) -> Result<As<Sheet, (Saved, Vec<u8>)>, ApiError> {
@@ -85,5 +83,5 @@ pub(crate) async fn xlsx(
         let mut book = export::spreadsheet(archive, &filter, &keys, &paper, || {})?;
         Ok(book.save_to_buffer().map_err(InquiryError::from)?)
     };
-    Ok(As::new((XLSX, app.readers.read(made).await?)))
+    Ok(As::new((XLSX, readers.read(made).await?)))
 }

@@ -1,12 +1,11 @@
 //! `/api/history/report/...`: the pages of `history report` and `history spc --page`, for printing.
 
 use super::super::error::ApiError;
-use super::super::router::{App, AppState};
+use super::Readers;
 use super::members::{Charting, OfParts, OneLot, Paging, Printed, Runs, TimeSpan, filter};
 use crate::answers::{self, As};
 use crate::asked::{Asked, members};
 use crate::language::Preferred;
-use axum::extract::State;
 use axum::http::HeaderName;
 use axum::http::header::CONTENT_SECURITY_POLICY;
 use axum::response::Html;
@@ -47,12 +46,12 @@ members!(OfReport, OfCertificate);
 
 /// `GET /api/history/report/lot`.
 pub(crate) async fn lot(
-    State(app): App,
+    readers: Readers,
     preferred: Preferred,
     Asked((lot, printed, own)): Asked<(OneLot, Printed, OfReport)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(lot);
-    page(app, move |archive| {
+    page(&readers, move |archive| {
         let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         Ok(paper::lot_report(archive, &filter, own.ideal_cycle_s, &on)?)
     })
@@ -61,12 +60,12 @@ pub(crate) async fn lot(
 
 /// `GET /api/history/report/certificate`.
 pub(crate) async fn certificate(
-    State(app): App,
+    readers: Readers,
     preferred: Preferred,
     Asked((lot, printed, own)): Asked<(OneLot, Printed, OfCertificate)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(lot);
-    page(app, move |archive| {
+    page(&readers, move |archive| {
         let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         Ok(paper::part_certificate(archive, &filter, own.seq, &on)?)
     })
@@ -75,12 +74,12 @@ pub(crate) async fn certificate(
 
 /// `GET /api/history/report/alarms`.
 pub(crate) async fn alarms(
-    State(app): App,
+    readers: Readers,
     preferred: Preferred,
     Asked((asked, printed)): Asked<((Runs, TimeSpan, Paging), Printed)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(asked);
-    page(app, move |archive| {
+    page(&readers, move |archive| {
         let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         Ok(paper::alarm_list(archive, &filter, &on)?)
     })
@@ -89,14 +88,14 @@ pub(crate) async fn alarms(
 
 /// `GET /api/history/report/chart`.
 pub(crate) async fn chart(
-    State(app): App,
+    readers: Readers,
     preferred: Preferred,
     Asked((asked, how, printed)): Asked<((Runs, TimeSpan, OfParts), Charting, Printed)>,
 ) -> Result<Page, ApiError> {
     let filter = filter(asked);
     checks::validate(&filter)?;
     let last = how.last()?;
-    page(app, move |archive| {
+    page(&readers, move |archive| {
         let on = paper::paper_of(archive, &filter, preferred.unless(printed.lang))?;
         let about = filter.lot.clone().unwrap_or_default();
         let charts = super::charted(archive, &filter, &how)?;
@@ -106,8 +105,8 @@ pub(crate) async fn chart(
 }
 
 pub(super) async fn page(
-    app: AppState,
+    readers: &Readers,
     made: impl FnOnce(&Archive) -> Result<String, ApiError> + Send + 'static,
 ) -> Result<Page, ApiError> {
-    app.readers.read(made).await.map(with_policy)
+    readers.read(made).await.map(with_policy)
 }

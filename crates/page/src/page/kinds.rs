@@ -59,11 +59,11 @@ fn bins() -> Vec<&'static str> {
     bins
 }
 
-/// Returns `{id: {"en", "zh"}}`.
-pub(super) fn words() -> String {
+/// Returns `{id: {"en", "zh"}}` of the families that `shows` selects.
+pub(super) fn words(shows: impl Fn(&str) -> bool) -> String {
     let shown = texts::plain().filter(|it| {
         let family = it.id.split_once('-').map(|(family, _)| family);
-        family.is_none_or(|family| !ELSEWHERE.contains(&family))
+        family.is_none_or(|family| !ELSEWHERE.contains(&family) && shows(family))
     });
     let words = shown.map(|it| (it.id.to_owned(), json!({ "en": it.en, "zh": it.zh })));
     Value::Object(words.collect()).to_string()

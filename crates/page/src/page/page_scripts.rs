@@ -40,9 +40,10 @@ pub(super) static SCRIPTS: LazyLock<BTreeMap<String, CompressedBody>> = LazyLock
     SOURCES.map(script).into_iter().map(compressed).collect()
 });
 
-/// Returns the path of the script of each page, `{page: path}`.
-pub(super) fn json() -> String {
-    let paths = SOURCES.iter().flat_map(|source| {
+/// Returns the path of the script of each page, `{page: path}`, of the scripts that `has` selects by name.
+pub(super) fn json(has: impl Fn(&str) -> bool) -> String {
+    let sources = SOURCES.iter().filter(|source| has(source[0]));
+    let paths = sources.flat_map(|source| {
         let (path, _) = script(*source);
         pages(source[1]).map(move |page| (page.to_owned(), path.clone().into()))
     });

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 type Table = BTreeMap<String, BTreeMap<String, String>>;
 
 fn table() -> Table {
-    serde_json::from_str(&kinds::words()).unwrap()
+    serde_json::from_str(&kinds::words(|_| true)).unwrap()
 }
 
 fn first() -> &'static str {
@@ -22,13 +22,21 @@ fn first() -> &'static str {
 /// Markup of the answer to `GET /` and of the pages fetched later.
 static MARKUP: LazyLock<String> = LazyLock::new(|| {
     let pages = page_scripts::SOURCES.iter().map(|[_, markup, _]| *markup);
-    std::iter::once(FRAME).chain(pages).collect()
+    [FRAME, FLEET_FRAME].into_iter().chain(pages).collect()
 });
 /// Code of the answer to `GET /` and of the pages fetched later.
 static CODE: LazyLock<String> = LazyLock::new(|| {
     let pages = page_scripts::SOURCES.iter().map(|[_, _, code]| *code);
-    std::iter::once(SCRIPT).chain(pages).collect()
+    [SCRIPT, FLEET_SCRIPT].into_iter().chain(pages).collect()
 });
+
+/// Returns the code of a page with this script and of the pages that it fetches later.
+fn code(script: &'static str, fetches: impl Fn(&str) -> bool) -> String {
+    let fetched = page_scripts::SOURCES.iter().filter(|it| fetches(it[0]));
+    std::iter::once(script)
+        .chain(fetched.map(|it| it[2]))
+        .collect()
+}
 
 /// Returns the texts between `before` and the next `"`.
 fn quoted(text: &str, before: &str) -> BTreeSet<String> {
@@ -49,7 +57,7 @@ fn every_quantity_reaches_the_page_by_its_kind() {
         .map(|it| it["key"].as_str().unwrap())
         .collect();
     assert!(Characteristic::all().map(|it| it.key()).eq(keys));
-    for text in [CODE.as_str(), &kinds::words()] {
+    for text in [CODE.as_str(), &kinds::words(|_| true)] {
         assert!(!Characteristic::all().any(|it| text.contains(it.key())));
     }
 }
@@ -115,6 +123,8 @@ fn every_text_of_the_pages_is_used() {
         "tooling_end",
         "tooling_kind",
         "tooling_side",
+        "rigs",
+        "rigs_remedy",
     ];
     for key in table().keys() {
         let family = key.split('-').next().unwrap();
@@ -217,8 +227,15 @@ fn every_body_of_the_scene_has_a_text() {
 /// A script fetched later sees the names of the answer to `GET /`; a second definition would hide the first silently.
 #[test]
 fn every_top_level_name_of_the_scripts_is_unique() {
-    let mut seen = std::collections::BTreeSet::new();
-    for line in CODE.lines() {
+    let of_rig = unique_names(&code(SCRIPT, |_| true));
+    let of_fleet = unique_names(&code(FLEET_SCRIPT, |it| FLEET_PAGES.contains(&it)));
+    assert!(of_rig > 100 && of_fleet > 50, "{of_rig} {of_fleet}");
+}
+
+/// Counts the names that code defines; asserts that it defines none twice.
+fn unique_names(code: &str) -> usize {
+    let mut seen = BTreeSet::new();
+    for line in code.lines() {
         let words = line.strip_prefix("async ").unwrap_or(line);
         let Some(("function" | "const" | "let", rest)) = words.split_once(' ') else {
             continue;
@@ -228,7 +245,7 @@ fn every_top_level_name_of_the_scripts_is_unique() {
             .unwrap_or(rest.len());
         assert!(seen.insert(&rest[..end]), "{line}");
     }
-    assert!(seen.len() > 100, "{}", seen.len());
+    seen.len()
 }
 
 #[test]
@@ -264,15 +281,25 @@ fn first_answer_is_small_and_names_no_other_host() {
     }
 }
 
+fn scripts_of(has: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
+    serde_json::from_str(&page_scripts::json(has)).unwrap()
+}
+
 #[test]
 fn each_page_of_the_menu_comes_once() {
-    let paths: BTreeMap<String, String> = serde_json::from_str(&page_scripts::json()).unwrap();
-    for page in quoted(FRAME, "href=\"#") {
-        assert!(page == "operator" || paths.contains_key(&page), "{page}");
+    let paths = scripts_of(|_| true);
+    for (frame, paths) in [
+        (FRAME, paths.clone()),
+        (FLEET_FRAME, scripts_of(|it| FLEET_PAGES.contains(&it))),
+    ] {
+        let home = quoted(frame, "<main data-page=\"");
+        for page in quoted(frame, "href=\"#") {
+            assert!(home.contains(&page) || paths.contains_key(&page), "{page}");
+        }
+        assert_eq!(frame.matches("data-page=").count(), 2, "home and fetching");
     }
-    let pages = quoted(&MARKUP, "data-page=\"");
-    assert_eq!(MARKUP.matches("data-page=").count(), pages.len());
-    assert_eq!(paths.len(), pages.len() - 2, "operator and fetching");
+    let later: String = page_scripts::SOURCES.map(|it| it[1]).concat();
+    assert_eq!(later.matches("data-page=").count(), paths.len());
     for page in paths.keys() {
         assert!(CODE.contains(&format!("PAGES.{page} = ")), "{page}");
         assert!(!FRAME.contains(&format!("data-page=\"{page}\"")));
@@ -284,12 +311,13 @@ fn each_page_of_the_menu_comes_once() {
 
 #[test]
 fn no_inline_text_ends_its_element_early() {
-    let (words, kinds) = (kinds::words(), kinds::json());
+    let (words, kinds) = (kinds::words(|_| true), kinds::json());
     for (text, end) in [
         (LOOK, "</style"),
         (&words, "</script"),
         (&kinds, "</script"),
         (SCRIPT, "</script"),
+        (FLEET_SCRIPT, "</script"),
     ] {
         assert!(!text.to_ascii_lowercase().contains(end));
     }

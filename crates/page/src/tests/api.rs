@@ -18,11 +18,11 @@ pub(super) fn request(method: &str, path: &str, token: Option<&str>, body: &str)
     request.body(Body::from(body.to_owned())).unwrap()
 }
 
-fn paths(method: Method) -> Vec<&'static str> {
+fn paths(method: Method) -> Vec<String> {
     let routes = api::routes().into_iter();
     routes
         .filter(|it| it.method == method)
-        .map(|it| it.path)
+        .map(|it| it.path.into_owned())
         .collect()
 }
 
@@ -41,7 +41,7 @@ async fn reading_is_open_to_all_or_to_a_role() {
             .iter()
             .zip([None].into_iter().chain(Role::ALL.map(Some)))
         {
-            let asked = request("GET", path, token.as_deref(), "");
+            let asked = request("GET", &path, token.as_deref(), "");
             let status = fixture.ask(asked).await.status.as_u16();
             match (route.role, role) {
                 (Some(_), None) => assert_eq!(status, 401, "{path}"),
@@ -112,7 +112,7 @@ async fn every_route_has_one_method() {
         .chain(paths(Method::Post).into_iter().map(|it| (it, "POST")))
     {
         for method in ["PUT", "DELETE", "PATCH", "OPTIONS"] {
-            let answer = fixture.ask(request(method, path, None, "")).await;
+            let answer = fixture.ask(request(method, &path, None, "")).await;
             assert!(answer.refused(405).contains(method), "{path}");
             assert_eq!(answer.headers["allow"], allowed, "{path}");
         }

@@ -64,10 +64,10 @@ let past = [];
 
 async function readPast() {
   const isNewest = newest(readPast), members = {since: rfc3339(at("alarm_since").value), limit: 500};
-  at("alarm_print").href = "/api/history/report/alarms" + query({since: members.since, lang: language});
+  at("alarm_print").href = "api/history/report/alarms" + query({since: members.since, lang: language});
   showRanked(members.since);
   try {
-    const found = await (await ask("/api/history/alarms" + query(members))).json();
+    const found = await (await ask("api/history/alarms" + query(members))).json();
     if (!isNewest()) return;
     past = found.reverse();
     at("alarm_trouble").textContent = "";
@@ -80,7 +80,7 @@ async function readPast() {
 
 // Lists the most frequent alarms with their counts and the time for which they were active.
 async function showRanked(since) {
-  const ranked = await ask("/api/history/alarm-counts" + query({since})).then((it) => it.json(), () => []);
+  const ranked = await ask("api/history/alarm-counts" + query({since})).then((it) => it.json(), () => []);
   at("ranked").replaceChildren(...ranked.slice(0, 10).map((it) => {
     const bar = make("meter");
     bar.max = ranked[0].n;

@@ -27,15 +27,16 @@ async function fillLots() {
 
 async function readParts() {
   const isNewest = newest(readParts), members = filter();
-  at("export_csv").href = "/api/history/export.csv" + query(members);
-  at("export_xlsx").href = "/api/history/export.xlsx" + query({...members, lang: language});
+  at("export_csv").href = "api/history/export.csv" + query(members);
+  at("export_xlsx").href = "api/history/export.xlsx" + query({...members, lang: language});
+  at("h_rejudge").hidden = !Object.hasOwn(SCRIPTS, "rejudge");
   at("h_rejudge").href = "#rejudge" + query({lot: members.lot});
   at("h_lot_report").hidden = !members.lot;
-  at("h_lot_report").href = "/api/history/report/lot" + query({lot: members.lot, lang: language});
+  at("h_lot_report").href = "api/history/report/lot" + query({lot: members.lot, lang: language});
   try {
     const [{parts: count}, parts] = await Promise.all([
-      ask("/api/history/count" + query(members)).then((it) => it.json()),
-      ask("/api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), fillLots()]);
+      ask("api/history/count" + query(members)).then((it) => it.json()),
+      ask("api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), fillLots()]);
     if (!isNewest()) return;
     showParts(parts, count);
     at("h_trouble").textContent = "";
@@ -66,7 +67,16 @@ at("h_filter").addEventListener("submit", (event) => {
 at("h_back").addEventListener("click", () => { offset = Math.max(0, offset - PAGE); readParts(); });
 at("h_next").addEventListener("click", () => { offset += PAGE; readParts(); });
 
-PAGES.history = {enter() { makeFilter(); readParts(); }};
+// Takes the filter of the address, if it has one, in place of the bound of the page.
+function takeFilter() {
+  const given = Object.fromEntries(new URLSearchParams(location.hash.split("?")[1]));
+  const named = FIELDS.filter((field) => Object.hasOwn(given, field));
+  for (const field of named) at("h_" + field).value = given[field];
+  if (named.length) at("h_since").value = "";
+  else if (bounds.hours && !at("h_since").value) at("h_since").value = localText(new Date(Date.now() - bounds.hours * 3600000));
+}
+
+PAGES.history = {enter() { makeFilter(); takeFilter(); readParts(); }};
 
 // --- one part ---
 
@@ -76,10 +86,10 @@ async function readPart() {
   const isNewest = newest(readPart);
   const which = Object.fromEntries(new URLSearchParams(location.hash.split("?")[1]));
   at("part_title").textContent = which.lot + " / " + which.run + " / " + which.seq;
-  at("part_certificate").href = "/api/history/report/certificate" + query({lot: which.lot, run: which.run, seq: which.seq, lang: language});
+  at("part_certificate").href = "api/history/report/certificate" + query({lot: which.lot, run: which.run, seq: which.seq, lang: language});
   at("part_certificate").hidden = which.kind !== "lot";
   try {
-    const [part] = await (await ask("/api/history/show" + query(which))).json();
+    const [part] = await (await ask("api/history/show" + query(which))).json();
     if (!isNewest()) return;
     showPart(part);
     at("part_trouble").textContent = "";

@@ -110,7 +110,7 @@ async function readBook() {
     book = found;
     showBook();
     showWear(await (await ask("/api/wear")).json());
-    showAudit(await (await ask("/api/history/orders" + query({since: dayAgo()}))).json());
+    showAudit(await (await ask("api/history/orders" + query({since: dayAgo()}))).json());
   } catch (error) {
     if (isNewest()) lotAnswer(error.message);
   }

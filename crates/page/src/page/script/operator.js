@@ -53,12 +53,6 @@ function bandCell(key, last) {
 
 const rangeOf = (low, high) => (low === null && high === null ? "" : low === null ? "≤ " + high : high === null ? "≥ " + low : low + " … " + high);
 
-function drawn(tag, attributes) {
-  const element = document.createElementNS(at("mimic").firstElementChild.namespaceURI, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  return element;
-}
-
 const SHORT = {pass: "✓", fail: "✗", void: "?"};
 
 function showRecent(recent) {

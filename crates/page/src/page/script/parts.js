@@ -1,6 +1,6 @@
 // Lots and parts of the history, as several pages show them.
 
-const readLots = async () => (await ask("/api/history/list")).json();
+const readLots = async () => (await ask("api/history/list" + query({since: bounds.lot_days && "-" + bounds.lot_days + "d"}))).json();
 
 const verdictCell = (verdict) => {
   const cell = make("td", undefined, verdict);
@@ -8,9 +8,11 @@ const verdictCell = (verdict) => {
   return cell;
 };
 
+// Links to the page of a part; on the page of many rigs, to that of its rig.
 function partLink(part) {
+  const [site, ...rig] = (part.rig || "").split("/").map(encodeURIComponent);
   const link = make("a", part.lot + " / " + part.run + " / " + part.seq);
-  link.href = "#part" + query({lot: part.lot, run: part.run, seq: part.seq, kind: part.kind});
+  link.href = (part.rig ? "/rigs/" + site + "/" + rig.join("%2F") + "/" : "") + "#part" + query({lot: part.lot, run: part.run, seq: part.seq, kind: part.kind});
   return link;
 }
 

@@ -11,7 +11,7 @@ async function readPeople() {
     const people = await (await ask("/api/people")).json();
     at("p_list").replaceChildren(...people.map(personRow));
     const since = new Date(Date.now() - AUDIT_DAYS * 24 * 3600 * 1000).toISOString();
-    const read = async (order) => (await ask("/api/history/orders" + query({since, order}))).json();
+    const read = async (order) => (await ask("api/history/orders" + query({since, order}))).json();
     const lines = (await Promise.all(["people", "login"].map(read))).flat();
     lines.sort((a, b) => (a.at < b.at ? 1 : -1));
     at("p_audit").replaceChildren(...lines.slice(0, AUDIT_LINES).map((it) =>

@@ -3,6 +3,8 @@
 let lotsSeen = [];
 
 async function enterQuality() {
+  // The cycle is that of a rig that the page follows.
+  for (const it of [at("q_cycle"), at("q_cycle").previousElementSibling]) it.hidden = !Object.hasOwn(SCRIPTS, "io");
   fillSelect(at("q_param"), keyOptions());
   try {
     lotsSeen = await readLots();
@@ -32,15 +34,15 @@ async function figures(path, which) {
 
 async function readQuality() {
   const isNewest = newest(readQuality), lot = at("q_lot").value, param = at("q_param").value;
-  at("q_print").href = "/api/history/report/chart" + query({lot, param, lang: language});
+  at("q_print").href = "api/history/report/chart" + query({lot, param, lang: language});
   if (!lot) {
     at("q_trouble").textContent = word("h-none");
     return;
   }
   const read = [
-    figures("/api/history/report/chart" + query({lot, param, last: 100, lang: language}), "main figure"),
-    figures("/api/history/report/lot" + query({lot, lang: language}), "figure.pareto, .figures figure"),
-    ask("/api/history/stats" + query({lot, param})).then((it) => it.json()), storedCycles(lot)];
+    figures("api/history/report/chart" + query({lot, param, last: 100, lang: language}), "main figure"),
+    figures("api/history/report/lot" + query({lot, lang: language}), "figure.pareto, .figures figure"),
+    ask("api/history/stats" + query({lot, param})).then((it) => it.json()), storedCycles(lot)];
   const [charts, histograms, stats, cycles] = await Promise.allSettled(read);
   if (!isNewest()) return;
   at("q_charts").replaceChildren(...(charts.value || []));
@@ -71,7 +73,7 @@ async function readComparison() {
   at("q_compare_trouble").textContent = lots.length < 2 ? word("q-choose") : "";
   at("q_compared").replaceChildren();
   if (lots.length < 2) return;
-  const path = "/api/history/report/comparison" + query({param: at("q_param").value, lots: JSON.stringify(lots), lang: language});
+  const path = "api/history/report/comparison" + query({param: at("q_param").value, lots: JSON.stringify(lots), lang: language});
   at("q_compare_print").href = path;
   try {
     const compared = await figures(path, "figure, table.compared");
@@ -89,7 +91,7 @@ async function readGauge() {
   at("q_gauge_trouble").textContent = "";
   if (!file) return;
   try {
-    const reply = await post("/api/quality/grr", {csv: await file.text()});
+    const reply = await post("api/quality/grr", {csv: await file.text()});
     const found = await reply.json();
     if (!reply.ok) throw new Error(said(found, "reason"));
     const figure = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(4))) : NONE);
@@ -108,9 +110,9 @@ const LAST_PARTS = 12;
 
 // Returns a drawing of how the last parts of a lot overlap: one is tested while the one before it travels to its bin.
 async function storedCycles(lot) {
-  const {parts: count} = await (await ask("/api/history/count" + query({lot}))).json();
+  const {parts: count} = await (await ask("api/history/count" + query({lot}))).json();
   const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};
-  const parts = (await (await ask("/api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
+  const parts = (await (await ask("api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
   return parts.length ? [timeBars(parts.map((it) => [word("h-part") + " " + it.seq, partBars(it)]), word("g-stored"))] : [];
 }
 

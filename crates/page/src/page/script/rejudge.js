@@ -32,7 +32,7 @@ async function rejudge() {
   judgedAgain = null;
   try {
     const members = {lot: at("j_lot").value, recipe: at("j_recipe").value, changed: true};
-    const found = await (await ask("/api/history/rejudge" + query(members))).json();
+    const found = await (await ask("api/history/rejudge" + query(members))).json();
     if (!isNewest()) return;
     judgedAgain = found;
   } catch (error) {

@@ -18,6 +18,8 @@ let theme = options.get("theme") || stored.get("theme") ||
 if (language !== "zh") language = "en";
 let view = null;
 let me = null;
+// Bounds of the questions of a page: hours of history that it shows at first, days of lots that it lists; `null` for no bound.
+const bounds = {hours: null, lot_days: null};
 // Functions of the pages by name: `enter` runs when the page opens or the language changes, `show` at every view.
 const PAGES = {};
 
@@ -98,6 +100,9 @@ function clock(when) {
   return date.getFullYear() + "-" + two(date.getMonth() + 1) + "-" + two(date.getDate()) + " " +
     two(date.getHours()) + ":" + two(date.getMinutes()) + ":" + two(date.getSeconds());
 }
+
+// Returns the text of a field for local time, to the minute.
+const localText = (date) => clock(date.toISOString()).slice(0, 16).replace(" ", "T");
 
 // Converts the text of a field for local time to RFC 3339; empty for an empty field.
 const rfc3339 = (text) => (text ? new Date(text).toISOString() : "");
