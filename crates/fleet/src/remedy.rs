@@ -132,6 +132,7 @@ impl FleetError {
             | Self::Shifts { .. } => Remedy::Settings,
             Self::RealRigs { .. }
             | Self::Runtime { .. }
+            | Self::Fault { .. }
             | Self::Refused { .. }
             | Self::History(_) => Remedy::Log,
         }
