@@ -4,7 +4,7 @@
 use super::super::board::Position;
 use super::super::given::{Given, NotDelivered};
 use super::super::state::{Next, Pulses, State};
-use super::{STORED, close, conclude_ready, is_switched, leave, loop_level};
+use super::{STORED, close, conclude_ready, leave, loop_level};
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
 use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER};
@@ -46,11 +46,7 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
         Act::Wait(Span::seconds(scales.record_s) + STORED),
     ]);
     acts.extend(leave(state, points));
-    let mut queries = vec![
-        points.complete(),
-        points.channel(&scales, DIVIDED_CHANNEL),
-        points.channel(&scales, OUTPUT_CHANNEL),
-    ];
+    let mut queries = points.record(&scales, &[DIVIDED_CHANNEL, OUTPUT_CHANNEL]);
     queries.extend(state.end_pulses(points));
     queries.extend(loop_level(state, ac, points));
     acts.push(Act::Query(queries));
@@ -127,9 +123,6 @@ pub fn conclude(
     ac: &AcPlan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    if !is_switched(state, given) {
-        return Ok(Next::Planned);
-    }
     conclude_ready(state, ac, given);
     let [divided, clamped] = given.waveforms()?;
     let Some(walk) = walk(ac, state.references, [&divided, &clamped]) else {
