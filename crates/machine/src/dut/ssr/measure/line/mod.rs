@@ -125,6 +125,8 @@ pub fn close(state: &mut State, to: Position, ac: &AcPlan, points: &Points) -> V
     }
     acts.push(Act::Set(points.outputs(to.outputs())));
     acts.push(match is_beside {
+        // The train waits longer than the relay needs, from this mark on.
+        true if to == Position::LinePulsed => Act::Mark,
         true => Act::Wait(RELAY),
         false => contacts(points, to),
     });

@@ -1,7 +1,7 @@
 //! Train of control pulses whose period shifts the phase of the mains from pulse to pulse. One record gives the times,
 //! the voltage at turn-on, and the voltage at later half cycles.
 
-use super::super::board::Position;
+use super::super::board::{Position, RELAY};
 use super::super::given::{Given, NotDelivered};
 use super::super::state::{Next, Pulses, State};
 use super::{STORED, close, conclude_ready, leave, loop_level};
@@ -38,10 +38,9 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
     state.pulses = Pulses::Sent;
     acts.extend([
         Act::Query(queries),
-        // The digitizer needs the part of its record before the trigger.
-        Act::Wait(Span::seconds(
-            ac.half_s().max(2.0 * BEFORE * scales.record_s),
-        )),
+        // The digitizer needs the part of its record before the trigger, the output a zero of its current.
+        Act::Wait(Span::seconds(2.0 * BEFORE * scales.record_s)),
+        Act::WaitSinceMark(Span::seconds(ac.half_s()).max(RELAY)),
         Act::Query(vec![points.start()]),
         Act::Wait(Span::seconds(scales.record_s) + STORED),
     ]);
