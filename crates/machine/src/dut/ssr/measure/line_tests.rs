@@ -121,12 +121,10 @@ fn a_dead_line_fails_no_part() {
 
 #[test]
 fn an_output_that_conducts_without_control_still_fails() {
-    let cases: [(fn(&mut Part), &str); 2] = [
-        (|it| it.shorted = 1.0, "ssr_shorted"),
-        (|it| it.sticks = true, "ssr_stuck_on"),
-    ];
-    for (change, code) in cases {
-        let (_, test) = tested(ZERO_CROSS, &[], changed(change));
+    let shorted = changed(|it| it.shorted = 1.0);
+    let sticking = changed(|it| it.sticks = true);
+    for (part, code) in [(shorted, "ssr_shorted"), (sticking, "ssr_stuck_on")] {
+        let (_, test) = tested(ZERO_CROSS, &[], part);
         assert_eq!(ended(&test), ("fail", Some((code, String::new()))));
     }
 }
