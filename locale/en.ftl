@@ -472,6 +472,7 @@ reason-ssr_peak_drop_too_high = drop at the end of the range
 reason-ssr_contactor = mirror contact { $detail } does not agree with its contactor
     .any = a mirror contact does not agree with its contactor
 reason-ssr_wrong_mains = voltage of the AC source is wrong
+reason-ssr_line_dead = no voltage from the line: fuse, load or output of the AC source
 reason-ssr_wrong_reference = a reference of the fixture reads wrong
 reason-ssr_not_delivered = { $detail } delivered other values than its programs return
     .any = an instrument delivered other values than its programs return

@@ -443,6 +443,7 @@ reason-ssr_peak_drop_too_high = 压降达到量程上限
 reason-ssr_contactor = 镜像触点 { $detail } 与接触器状态不符
     .any = 镜像触点与接触器状态不符
 reason-ssr_wrong_mains = 交流电源电压不符
+reason-ssr_line_dead = 电网侧无电压：熔断器、负载或交流电源输出故障
 reason-ssr_wrong_reference = 夹具基准读数错误
 reason-ssr_not_delivered = { $detail } 返回的数值与程序不符
     .any = 仪器返回的数值与程序不符

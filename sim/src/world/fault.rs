@@ -58,6 +58,7 @@ faults! {
         LineWelded = "line_contactor_welded", LineBroken = "line_contactor_broken",
         LoopWelded = "loop_contactor_welded", LoopBroken = "loop_contactor_broken",
         MirrorsStuck = "mirrors_stuck", SocketShort = "socket_short",
+        LineDead = "line_dead",
     }
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",

@@ -6,8 +6,9 @@
 use super::play::Refusal;
 use super::script::{Awaited, Script, Step};
 use cycle::{Event, PANEL};
+use machine::dut::Verdict;
 use machine::handling::ledger::{Part, PartRole};
-use machine::handling::output::Landed;
+use machine::handling::output::{Judged, Landed};
 use machine::rig::bin::Bin;
 use machine::station::annunciator::ListedAlarm;
 use machine::station::catalogue::AlarmCode;
@@ -17,6 +18,29 @@ use std::collections::{BTreeMap, BTreeSet};
 use texts::{Lang, Message};
 use units::RigTime;
 
+/// What a line about a part says.
+#[derive(Debug)]
+struct Told {
+    name: String,
+    verdict: &'static str,
+    /// Why a complete test could not judge the part, after a colon; empty for other parts.
+    why: String,
+}
+
+impl Told {
+    fn of(judged: &Judged) -> Self {
+        let why = match (&judged.verdict, &judged.part.interrupted) {
+            (Verdict::Void(_), None) => format!(": {}", judged.verdict.texts().join(", ")),
+            (Verdict::Void(_), Some(_)) | (Verdict::Pass | Verdict::Fail(_), _) => String::new(),
+        };
+        Self {
+            name: name(&judged.part),
+            verdict: judged.verdict.name(),
+            why,
+        }
+    }
+}
+
 /// Account of a story.
 #[derive(Debug)]
 pub struct Narrator {
@@ -24,8 +48,8 @@ pub struct Narrator {
     /// Rig time from which the account counts seconds: the first action of the script or the first alarm; `None` before
     /// it.
     zero: Option<RigTime>,
-    /// Name and verdict of each part, by ordinal.
-    parts: BTreeMap<u64, (String, &'static str)>,
+    /// Each part that is judged, by ordinal.
+    parts: BTreeMap<u64, Told>,
     explained: BTreeSet<AlarmCode>,
     /// Alarms whose cause is present.
     active: Vec<Alarm>,
@@ -59,16 +83,17 @@ impl Narrator {
             }
             Event::Alarm(alarm, _) => self.alarm(alarm, now),
             Event::Judged(judged) => {
-                let (name, verdict) = (name(&judged.part), judged.verdict.name());
+                let told = Told::of(judged);
                 if let Some(why) = &judged.part.interrupted {
+                    let name = &told.name;
                     self.stamped(now, &format!("{name:<9} not judged, to retest: {why}"));
                 }
-                self.parts.insert(judged.part.ordinal, (name, verdict));
+                self.parts.insert(judged.part.ordinal, told);
             }
             Event::Interrupted(interrupted) => {
-                if let Some((name, verdict)) = self.parts.get_mut(&interrupted.ordinal) {
-                    let (name, was) = (name.clone(), std::mem::replace(verdict, "void"));
-                    let why = &interrupted.why;
+                if let Some(told) = self.parts.get_mut(&interrupted.ordinal) {
+                    let was = std::mem::replace(&mut told.verdict, "void");
+                    let (name, why) = (told.name.clone(), &interrupted.why);
                     self.stamped(
                         now,
                         &format!("{name:<9} {was}, to retest all the same: {why}"),
@@ -178,10 +203,9 @@ impl Narrator {
 
     fn landed(&mut self, landed: &Landed) {
         let (part, bin) = (&landed.part, landed.bin);
-        if let (PartRole::Lot(_), Some((name, verdict))) =
-            (&part.role, self.parts.get(&part.ordinal))
-        {
-            let text = format!("{name:<9} {verdict}, in bin {bin}");
+        if let (PartRole::Lot(_), Some(told)) = (&part.role, self.parts.get(&part.ordinal)) {
+            let Told { name, verdict, why } = told;
+            let text = format!("{name:<9} {verdict}, in bin {bin}{why}");
             *self.bins.entry(bin).or_insert(0) += 1;
             self.plain(&text);
         }

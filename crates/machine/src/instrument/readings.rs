@@ -22,6 +22,8 @@ pub struct Readings {
     pub converted: Vec<Converted>,
     /// Outcomes of [`Act::Until`](super::act::Act::Until): true when the point became active.
     pub seen: Vec<bool>,
+    /// An input that has missed its state at an [`Act::Agree`](super::act::Act::Agree), which ended the acts.
+    pub disagreed: Option<DigitalInput>,
     /// All samples, and the values commanded to outputs and sources.
     pub trace: Trace,
 }

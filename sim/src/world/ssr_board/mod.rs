@@ -34,6 +34,7 @@ table!(
         safe_below_v: f64, safe_after_ms: f64, input_limit_v: f64,
         line_ohm: f64, line_henry: f64, line_shunt_ohm: f64, loop_ohm: f64, loop_shunt_mohm: f64,
         contactor_close_ms: f64, contactor_open_ms: f64, socket_short_mohm: f64,
+        blown_gohm: f64,
     }
 );
 

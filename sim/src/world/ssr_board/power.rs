@@ -41,6 +41,8 @@ pub struct Troubles {
     pub mirrors_stuck: bool,
     /// A short over the output pins.
     pub socket_short: bool,
+    /// The fuse between the AC source and the load of the line is blown; the loop has its own.
+    pub line_dead: bool,
 }
 
 impl Troubles {
@@ -57,6 +59,7 @@ impl Troubles {
             ],
             mirrors_stuck: lasts(Fault::MirrorsStuck),
             socket_short: lasts(Fault::SocketShort),
+            line_dead: lasts(Fault::LineDead),
         }
     }
 }
@@ -116,6 +119,9 @@ impl SsrBoard {
             contactor.damage(damage, self.now_us);
         }
         self.contactors.show();
+        if let (Some(load), Some(circuit)) = (self.load(), &mut self.alternating) {
+            circuit.reload(load);
+        }
         self.energise();
     }
 
@@ -183,7 +189,10 @@ impl SsrBoard {
                 shunt_ohm: table.loop_shunt_mohm * 1e-3,
             }),
             (true, false) => Some(Load {
-                ohms: table.line_ohm,
+                ohms: match self.contactors.troubles.line_dead {
+                    true => table.line_ohm + table.blown_gohm * 1e9,
+                    false => table.line_ohm,
+                },
                 henries: match self.commands.is_on(Out::LoadSelect) {
                     true => table.line_henry,
                     false => 0.0,

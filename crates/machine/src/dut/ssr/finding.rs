@@ -49,8 +49,10 @@ pub enum Finding {
     PeakDropTooHigh,
     /// The mirror contacts do not show the position to which a contactor was switched; detail: the point.
     Contactor,
-    /// The voltage of the AC source is not the one that was set.
+    /// The voltage of the AC source, or that of the line at the output, is not the one that was set.
     WrongMains,
+    /// The line brings neither voltage nor current to the output: fuse, load or output of the source.
+    LineDead,
     /// A reference of the fixture reads more than a tenth off its value.
     WrongReference,
     /// An instrument has delivered other values than its programs return; detail: the instrument.
@@ -59,7 +61,7 @@ pub enum Finding {
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::PinOpen,
         Self::ProbeChainOpen,
         Self::Turned,
@@ -81,6 +83,7 @@ impl Finding {
         Self::PeakDropTooHigh,
         Self::Contactor,
         Self::WrongMains,
+        Self::LineDead,
         Self::WrongReference,
         Self::NotDelivered,
     ];
@@ -125,6 +128,7 @@ impl Finding {
             Self::PeakDropTooHigh => output("ssr_peak_drop_too_high").proves(P::Drop, High),
             Self::Contactor => Entry::void("ssr_contactor"),
             Self::WrongMains => Entry::void("ssr_wrong_mains"),
+            Self::LineDead => Entry::void("ssr_line_dead"),
             Self::WrongReference => Entry::void("ssr_wrong_reference"),
             Self::NotDelivered => Entry::void("ssr_not_delivered"),
         }

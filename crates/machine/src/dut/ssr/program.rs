@@ -249,13 +249,19 @@ impl Points {
         self.query(Device::Digitizer, program, &arguments)
     }
 
+    /// Proves that a record with these scales is complete, and reads channels of it.
+    pub fn record(&self, scales: &Scales, channels: &[f64]) -> Vec<Query> {
+        let channels = channels.iter().map(|it| self.channel(scales, *it));
+        std::iter::once(self.complete()).chain(channels).collect()
+    }
+
     /// Triggers the digitizer at once, without an edge.
     pub fn force_trigger(&self) -> Query {
         self.query(Device::Digitizer, "force_trigger", &[])
     }
 
     /// Reads one channel of a record with these scales.
-    pub fn channel(&self, scales: &Scales, channel: f64) -> Query {
+    fn channel(&self, scales: &Scales, channel: f64) -> Query {
         let arguments = [("channel", channel), ("points", scales.points)];
         self.query(Device::Digitizer, "waveform", &arguments)
     }

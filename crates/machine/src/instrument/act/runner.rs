@@ -294,12 +294,13 @@ impl Runner {
             }) => {
                 let states = self.poll(&word, image, now)?;
                 let mut each = expected.iter();
-                let agree = each.all(|(it, on)| image.answered_input(*it, now) == Some(*on));
-                if !agree && self.since.since(self.began) < within {
+                let wrong = each.find(|(it, on)| image.answered_input(*it, now) != Some(*on));
+                if wrong.is_some() && self.since.since(self.began) < within {
                     return Ok(());
                 }
                 self.readings.keep_word(&word, &states);
-                if !agree {
+                if let Some((input, _)) = wrong {
+                    self.readings.disagreed = Some(*input);
                     self.acts = Vec::new().into_iter();
                 }
             }

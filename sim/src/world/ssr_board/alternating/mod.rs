@@ -69,6 +69,11 @@ impl Alternating {
         self.load
     }
 
+    /// Replaces the load from the next segment on.
+    pub fn reload(&mut self, load: Load) {
+        self.load = load;
+    }
+
     /// Makes the circuit start a new segment as soon as time goes on, because something connected to it has changed.
     pub fn touch(&mut self, now_us: f64) {
         self.due_us = self.due_us.min(now_us);

@@ -165,6 +165,23 @@ fn a_short_in_the_socket_shows_at_five_volts() {
 }
 
 #[test]
+fn a_blown_fuse_of_the_line_spares_the_loop() {
+    let mut hand = rig("ac_zero_cross", EUROPE, 3, QUIET);
+    hand.rig.inject("line_dead").expect("a fault");
+    hand.line(EUROPE);
+    assert!(socket_v(&mut hand) < 1.0);
+    assert_eq!(hand.ask(AC, ":OUTP?"), "1");
+    hand.set("line_contactor", false);
+    hand.wait(40.0);
+    hand.tell(AC, "VOLT:AC 24;:CURR:LIM 8");
+    hand.set("loop_contactor", true);
+    hand.control(5.0);
+    hand.wait(200.0);
+    let amps = hand.value(AC, "MEAS:CURR:AC?");
+    assert!((amps - 5.0).abs() < 0.3, "{amps}");
+}
+
+#[test]
 fn equal_seeds_give_equal_bytes() {
     let heard = |seed: u64| {
         let mut hand = rig("ac_zero_cross", EUROPE, seed, "");

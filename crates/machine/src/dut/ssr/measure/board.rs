@@ -15,7 +15,7 @@ pub enum Position {
     Isolated,
     /// Output at its source through 1 kohm.
     Load,
-    /// The same with the pulse source at the control input.
+    /// The same with the pulse source at the control input; its stage ends with both other sources off.
     Pulsed,
     /// Output at its source, four wires.
     Direct,
@@ -44,6 +44,14 @@ impl Position {
         }
     }
 
+    /// Returns true when the stages leave both sources off in this position.
+    const fn is_off(self) -> bool {
+        match self {
+            Self::Isolated | Self::Pulsed => true,
+            Self::Load | Self::Direct | Self::Line | Self::LinePulsed | Self::Loop => false,
+        }
+    }
+
     /// Returns true when one of the contactors is closed.
     pub const fn is_on_mains(self) -> bool {
         match self {
@@ -59,7 +67,7 @@ pub fn change(points: &Points, from: Position, to: Position) -> Vec<Act> {
         return Vec::new();
     }
     let mut acts = Vec::new();
-    if from != Position::Isolated {
+    if !from.is_off() {
         let off = [Device::SmuIn, Device::SmuOut].map(|it| points.off(it));
         acts.push(Act::Query(off.to_vec()));
     }

@@ -35,13 +35,13 @@ pub fn acts(state: &mut State, points: &Points) -> Vec<Act> {
     acts
 }
 
-/// Returns the acts of the short check: as the part lies, then reversed.
+/// Returns the acts of the short check: as the part lies, then reversed. Its relays open while the input is measured,
+/// which needs none of them.
 pub fn short_acts(points: &Points) -> Vec<Act> {
     let (check, reversed) = (DigitalOut::ShortCheck, DigitalOut::OutputPolarity);
     let mut acts = look(points, &[check]).to_vec();
     acts.extend(look(points, &[check, reversed]));
     acts.push(Act::Set(points.outputs(&[])));
-    acts.push(Act::Wait(RELAY));
     acts
 }
 

@@ -1,5 +1,7 @@
 //! What a stage has read, with the points of the rig.
 
+use crate::dut::Reason;
+use crate::dut::ssr::Finding;
 use crate::dut::ssr::points::{Device, DigitalIn, Points};
 use crate::instrument::query::Waveform;
 use crate::instrument::readings::Readings;
@@ -9,6 +11,12 @@ use std::sync::Arc;
 /// An instrument has delivered other values than its programs return.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotDelivered(pub Device);
+
+impl From<NotDelivered> for Reason {
+    fn from(NotDelivered(device): NotDelivered) -> Self {
+        Finding::NotDelivered.with(device.name())
+    }
+}
 
 /// Readings of a stage with the points of the rig.
 #[derive(Clone, Copy)]

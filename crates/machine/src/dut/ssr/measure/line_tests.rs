@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::dut::Procedure;
-use crate::dut::ssr::points::{Device, DigitalIn};
+use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut};
 use crate::dut::ssr::tests::line_bench::{LineBench, Part, ZERO_CROSS, good, recipe};
 
 fn tested(text: &str, changes: &[(&str, &str)], part: Part) -> (LineBench, Procedure) {
@@ -17,6 +17,19 @@ fn changed(change: impl Fn(&mut Part)) -> Part {
     let mut part = good();
     change(&mut part);
     part
+}
+
+/// Returns the verdict of a test, with code and detail of the finding that has ended it.
+fn ended(test: &Procedure) -> (&'static str, Option<(&'static str, String)>) {
+    let why = test.why_stopped().map(|it| match it {
+        Stop::Fail(why) | Stop::Void(why) | Stop::Trouble(why) => why,
+    });
+    let why = why.map(|it| (it.code.name(), it.detail.clone()));
+    (test.verdict().name(), why)
+}
+
+fn void(code: &'static str, detail: &str) -> (&'static str, Option<(&'static str, String)>) {
+    ("void", Some((code, detail.to_owned())))
 }
 
 #[test]
@@ -62,9 +75,57 @@ fn a_welded_contactor_voids_the_part() {
     for mirror in [DigitalIn::LineOpen, DigitalIn::LoopOpen] {
         let part = changed(|it| it.stuck = vec![mirror]);
         let (bench, test) = tested(ZERO_CROSS, &[], part);
-        assert_eq!(test.verdict().name(), "void", "{mirror:?}");
+        assert_eq!(ended(&test), void("ssr_contactor", mirror.name()));
         let opens = bench.log.iter().rev().find(|it| it.starts_with("set"));
         assert!(!opens.unwrap().contains("contactor"), "{:?}", bench.log);
+    }
+}
+
+#[test]
+fn a_contactor_that_does_not_close_is_named() {
+    for (contactor, mirror) in [
+        (DigitalOut::LineContactor, DigitalIn::LineOpen),
+        (DigitalOut::LoopContactor, DigitalIn::LoopOpen),
+    ] {
+        let expected = void("ssr_contactor", mirror.name());
+        let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &[]));
+        bench.part.broken = vec![contactor];
+        assert_eq!(ended(&bench.tested(false)), expected, "first part");
+        bench.part.broken.clear();
+        assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
+        bench.part.broken = vec![contactor];
+        assert_eq!(ended(&bench.tested(false)), expected, "later part");
+    }
+}
+
+#[test]
+fn a_dead_line_fails_no_part() {
+    let dead = void("ssr_line_dead", "");
+    let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &[]));
+    for reference in [0, 1] {
+        bench.part.dead_from = bench.line_records + reference;
+        assert_eq!(ended(&bench.tested(false)), dead, "reference {reference}");
+    }
+    bench.part.dead_from = usize::MAX;
+    assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
+    // Both leakages and the turn-off show it; a train finds no mains.
+    let blind = void("ssr_pulse_not_recorded", "");
+    for (record, expected) in [&dead, &dead, &blind, &blind, &dead]
+        .into_iter()
+        .enumerate()
+    {
+        bench.part.dead_from = bench.line_records + record;
+        assert_eq!(ended(&bench.tested(false)), *expected, "record {record}");
+    }
+}
+
+#[test]
+fn an_output_that_conducts_without_control_still_fails() {
+    let shorted = changed(|it| it.shorted = 1.0);
+    let sticking = changed(|it| it.sticks = true);
+    for (part, code) in [(shorted, "ssr_shorted"), (sticking, "ssr_stuck_on")] {
+        let (_, test) = tested(ZERO_CROSS, &[], part);
+        assert_eq!(ended(&test), ("fail", Some((code, String::new()))));
     }
 }
 

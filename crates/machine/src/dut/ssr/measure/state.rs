@@ -8,6 +8,7 @@ use super::line::stage::AcStage;
 use super::line::{self, Level, conforms, looped, references, train};
 use super::stage::Stage;
 use super::{conformity, contact, discharge, input, leakage, resistance, threshold, timing};
+use crate::dut::Reason;
 use crate::dut::record::TestRecord;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_plan::AcPlan;
@@ -185,19 +186,29 @@ impl State {
         readings: &Readings,
     ) -> Next {
         let given = Given { points, readings };
-        let next = match stage {
-            Stage::Contact => Ok(contact::conclude(&mut self.record, &given)),
-            Stage::Short => Ok(contact::conclude_short(&mut self.record, plan, &given)),
-            Stage::Input => input::conclude(self, plan, &given),
-            Stage::Turned => input::conclude_turned(self, &given),
-            Stage::Dc(stage) => self.conclude_dc(stage, plan, (&given, now)),
-            Stage::Ac(stage) => self.conclude_ac(stage, plan, (&given, now)),
-            Stage::SourcesOff => Ok(Next::Planned),
-            Stage::Discharge => Ok(discharge::conclude(self, &given)),
-        };
-        next.unwrap_or_else(|NotDelivered(device)| {
-            self.record.stop(Finding::NotDelivered.with(device.name()));
+        let next = self.concluded(stage, plan, (&given, now));
+        next.unwrap_or_else(|why| {
+            self.record.stop(why);
             Next::Planned
+        })
+    }
+
+    /// Concludes; fails with the reason that ends the test.
+    fn concluded(
+        &mut self,
+        stage: Stage,
+        plan: &Plan,
+        (given, now): (&Given, RigTime),
+    ) -> Result<Next, Reason> {
+        Ok(match stage {
+            Stage::Contact => contact::conclude(&mut self.record, given),
+            Stage::Short => contact::conclude_short(&mut self.record, plan, given),
+            Stage::Input => input::conclude(self, plan, given)?,
+            Stage::Turned => input::conclude_turned(self, given)?,
+            Stage::Dc(stage) => self.conclude_dc(stage, plan, (given, now))?,
+            Stage::Ac(stage) => self.conclude_ac(stage, plan, (given, now))?,
+            Stage::SourcesOff => Next::Planned,
+            Stage::Discharge => discharge::conclude(self, given),
         })
     }
 
@@ -229,20 +240,21 @@ impl State {
         stage: AcStage,
         plan: &Plan,
         (given, now): (&Given, RigTime),
-    ) -> Result<Next, NotDelivered> {
+    ) -> Result<Next, Reason> {
+        line::switched(given)?;
         let ac = ac_of(plan);
-        match stage {
-            AcStage::Reference(it) => references::conclude(self, it, ac, given, now),
+        Ok(match stage {
+            AcStage::Reference(it) => references::conclude(self, it, ac, given, now)?,
             AcStage::Leakage | AcStage::LeakageHot => {
-                line::leakage::conclude(self, stage, plan, ac, given)
+                line::leakage::conclude(self, stage, plan, ac, given)?
             }
-            AcStage::Blocks(shift) => conforms::conclude_blocks(self, shift, plan, ac, given),
-            AcStage::Conducts(shift) => conforms::conclude_conducts(self, shift, plan, ac, given),
-            AcStage::Threshold(way) => threshold::conclude_line(self, way, plan, ac, given),
-            AcStage::Train => train::conclude(self, plan, ac, given),
-            AcStage::LoopReady => Ok(line::conclude_ready(self, ac, given)),
-            AcStage::Loop => looped::conclude(self, plan, ac, given),
-        }
+            AcStage::Blocks(shift) => conforms::conclude_blocks(self, shift, plan, ac, given)?,
+            AcStage::Conducts(shift) => conforms::conclude_conducts(self, shift, plan, ac, given)?,
+            AcStage::Threshold(way) => threshold::conclude_line(self, way, plan, ac, given)?,
+            AcStage::Train => train::conclude(self, plan, ac, given)?,
+            AcStage::LoopReady => line::conclude_ready(self, ac, given),
+            AcStage::Loop => looped::conclude(self, plan, ac, given)?,
+        })
     }
 
     /// Adds results, which have no reply of a module behind them.

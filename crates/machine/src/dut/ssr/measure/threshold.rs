@@ -8,6 +8,7 @@ use super::line::conforms::{self, Conducting};
 use super::line::stage::AcStage;
 use super::stage::Stage;
 use super::state::{Next, State};
+use crate::dut::Reason;
 use crate::dut::ssr::ac_plan::AcPlan;
 use crate::dut::ssr::accuracy;
 use crate::dut::ssr::parameter::Parameter;
@@ -82,7 +83,7 @@ pub fn conclude_line(
     plan: &Plan,
     ac: &AcPlan,
     given: &Given,
-) -> Result<Next, NotDelivered> {
+) -> Result<Next, Reason> {
     let Some(search) = state.search else {
         return Ok(Next::Planned);
     };

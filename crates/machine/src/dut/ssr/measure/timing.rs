@@ -8,7 +8,7 @@ use crate::dut::ssr::Finding;
 use crate::dut::ssr::accuracy;
 use crate::dut::ssr::edges::{Crossing, Edges, pulse};
 use crate::dut::ssr::parameter::Parameter;
-use crate::dut::ssr::plan::Plan;
+use crate::dut::ssr::plan::{LOAD_V, Plan};
 use crate::dut::ssr::points::{Device, Points};
 use crate::dut::ssr::program::{BEFORE, CONTROL_CHANNEL, OUTPUT_CHANNEL};
 use crate::instrument::act::Act;
@@ -18,7 +18,8 @@ use units::{Span, Unit};
 /// Time beyond the length of a record until the digitizer has stored it.
 const STORED: Span = Span::ms(2);
 
-/// Returns the acts of one pulse. Both sources at the input are at 0 V while it changes over.
+/// Returns the acts of one pulse. Both sources at the input are at 0 V while it changes over; all sources go off while the
+/// record is read.
 pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
     let mut acts = match state.position {
         Position::Load | Position::Pulsed => Vec::new(),
@@ -28,8 +29,10 @@ pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
         | Position::LinePulsed
         | Position::Loop => conformity::to_load(state, plan, points, None),
     };
-    state.position = Position::Pulsed;
     let mut queries = vec![points.off(Device::SmuIn), points.capture(plan)];
+    // A pulse before this one has left the output without its source.
+    let is_again = std::mem::replace(&mut state.position, Position::Pulsed) == Position::Pulsed;
+    queries.extend(is_again.then(|| points.source(Device::SmuOut, LOAD_V, &plan.load)));
     queries.extend(state.prepare_pulses(plan, points));
     state.pulses = Pulses::Sent;
     let record = Span::seconds(plan.record_s());
@@ -46,6 +49,7 @@ pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
         points.complete(),
         points.waveform(plan, CONTROL_CHANNEL),
         points.waveform(plan, OUTPUT_CHANNEL),
+        points.off(Device::SmuOut),
     ];
     reads.extend(state.end_pulses(points));
     acts.extend([Act::Query(reads), Act::Convert(Conversion::new(pulse))]);

@@ -78,6 +78,38 @@ pub fn recipe(changes: &[(&str, &str)]) -> Arc<Recipe> {
     Arc::new(toml::from_str(&text).unwrap())
 }
 
+/// Gives an image what the modules of the fixture answer to a read: the inputs that are on, and the voltage at the socket,
+/// V.
+pub fn scan(
+    image: &mut Image,
+    (wiring, points): (&Wiring, &Points),
+    read: &[Point],
+    (seen, residual_v): (&[DigitalIn], f64),
+    now: RigTime,
+) {
+    let terminals = DigitalIn::ALL.iter();
+    let terminals = terminals.map(|it| (it, wiring.digital_in(points.input(*it))));
+    let word = terminals.fold(0, |word, (point, terminal)| {
+        let is_set = seen.contains(point) != terminal.active_low;
+        word | if is_set { terminal.bit() } else { 0 }
+    });
+    let [first, second] = u16::to_be_bytes(word);
+    let module = wiring
+        .digital_in(points.input(DigitalIn::ProbeChain))
+        .module;
+    let (line, command) = (wiring.module(module).line, wiring.poll(module));
+    let bits = Reply::Bits(Bits { first, second });
+    image.accept(line, &command, &bits, "", now).unwrap();
+    for point in read.iter().filter(|it| matches!(it, Point::Analog(_))) {
+        let command = wiring.reads(&[*point])[0].1;
+        let steps = (residual_v * 0.01 / 10.0 * 32768.0).round() as i16;
+        let text = format!(">{steps:04X}");
+        let reply = command.decode(format!("{text}\r").as_bytes(), false);
+        let reply = reply.unwrap();
+        image.accept(line, &command, &reply, &text, now).unwrap();
+    }
+}
+
 /// True values of a part, and the state of the fixture.
 #[derive(Debug, Clone)]
 pub struct Part {
@@ -262,35 +294,12 @@ impl Bench {
         assert!(!moved || is_cold, "switched at {} V", self.source_v);
     }
 
-    fn scan(&mut self, points: &[Point]) {
-        let module = self
-            .wiring
-            .digital_in(self.points.input(DigitalIn::ProbeChain))
-            .module;
-        let mut word = 0;
-        for point in DigitalIn::ALL {
-            let terminal = self.wiring.digital_in(self.points.input(*point));
-            if self.sees(*point) != terminal.active_low {
-                word |= terminal.bit();
-            }
-        }
-        let [first, second] = u16::to_be_bytes(word);
-        let (line, command) = (self.wiring.module(module).line, self.wiring.poll(module));
-        let bits = Reply::Bits(Bits { first, second });
-        self.image
-            .accept(line, &command, &bits, "", self.now)
-            .unwrap();
-        for point in points.iter().filter(|it| matches!(it, Point::Analog(_))) {
-            let command = self.wiring.reads(&[*point])[0].1;
-            let steps = (self.part.residual_v * 0.01 / 10.0 * 32768.0).round() as i16;
-            let text = format!(">{steps:04X}");
-            let reply = command
-                .decode(format!("{text}\r").as_bytes(), false)
-                .unwrap();
-            self.image
-                .accept(line, &command, &reply, &text, self.now)
-                .unwrap();
-        }
+    fn scan(&mut self, read: &[Point]) {
+        let inputs = DigitalIn::ALL.iter().copied();
+        let seen: Vec<DigitalIn> = inputs.filter(|it| self.sees(*it)).collect();
+        let of = (&*self.wiring, &self.points);
+        let shown = (&seen[..], self.part.residual_v);
+        scan(&mut self.image, of, read, shown, self.now);
     }
 
     fn sees(&self, point: DigitalIn) -> bool {

@@ -1,7 +1,7 @@
 //! A fixture with an AC part on it, for tests: mains, line, loop and references answer with waveforms.
 #![allow(clippy::unwrap_used)]
 
-use super::bench::{profiles, wiring};
+use super::bench::{profiles, scan, wiring};
 use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
 use crate::dut::em_relay::settings::ReferenceSet;
 use crate::dut::procedure::Progress;
@@ -14,7 +14,6 @@ use crate::instrument::query::{Delivered, Query, Waveform};
 use crate::rig::image::Image;
 use crate::rig::point::Point;
 use crate::rig::wiring::Wiring;
-use dcon::{Bits, Reply};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use texts::Message;
@@ -58,6 +57,11 @@ pub struct LineBench {
     falls: bool,
     train: (f64, f64, f64, f64),
     memory: Vec<Vec<f32>>,
+    /// Number of records on the line so far, and whether the present one shows it dead.
+    pub line_records: usize,
+    is_dead: bool,
+    /// True once the output conducts for good.
+    has_stuck: bool,
     seed: u64,
 }
 
@@ -94,6 +98,9 @@ impl LineBench {
             falls: false,
             train: (0.0, 1.0, 0.0, 0.0),
             memory: Vec::new(),
+            line_records: 0,
+            is_dead: false,
+            has_stuck: false,
             seed: 1,
         }
     }
@@ -139,7 +146,7 @@ impl LineBench {
                     .zip(self.points.outputs(DigitalOut::ALL));
                 for (point, (handle, _)) in all {
                     let state = outputs.iter().find(|it| it.0 == handle).unwrap().1;
-                    match state {
+                    match state && !self.part.broken.contains(point) {
                         true => self.on.insert(*point),
                         false => self.on.remove(point),
                     };
@@ -194,31 +201,11 @@ impl LineBench {
         );
     }
 
-    fn scan(&mut self, points: &[Point]) {
-        let module = self
-            .wiring
-            .digital_in(self.points.input(DigitalIn::ProbeChain))
-            .module;
-        let mut word = 0;
-        for point in DigitalIn::ALL {
-            let terminal = self.wiring.digital_in(self.points.input(*point));
-            if self.sees(*point) != terminal.active_low {
-                word |= terminal.bit();
-            }
-        }
-        let [first, second] = u16::to_be_bytes(word);
-        let (line, command) = (self.wiring.module(module).line, self.wiring.poll(module));
-        let bits = Reply::Bits(Bits { first, second });
-        self.image
-            .accept(line, &command, &bits, "", self.now)
-            .unwrap();
-        for point in points.iter().filter(|it| matches!(it, Point::Analog(_))) {
-            let command = self.wiring.reads(&[*point])[0].1;
-            let reply = command.decode(b">0010\r", false).unwrap();
-            self.image
-                .accept(line, &command, &reply, ">0010", self.now)
-                .unwrap();
-        }
+    fn scan(&mut self, read: &[Point]) {
+        let inputs = DigitalIn::ALL.iter().copied();
+        let seen: Vec<DigitalIn> = inputs.filter(|it| self.sees(*it)).collect();
+        let of = (&*self.wiring, &self.points);
+        scan(&mut self.image, of, read, (&seen, 0.5), self.now);
     }
 
     fn sees(&self, point: DigitalIn) -> bool {

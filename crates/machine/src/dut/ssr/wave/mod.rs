@@ -105,6 +105,11 @@ impl<'a> Channel<'a> {
         (0..self.len()).any(|it| self.at(it).abs() >= value)
     }
 
+    /// Returns the greatest value in the direction of a sign, 1 or -1; at least 0.
+    pub fn peak(&self, sign: f64) -> f64 {
+        (0..self.len()).fold(0.0, |most, it| f64::max(most, sign * self.at(it)))
+    }
+
     /// Yields time and value of every `stride`th sample from `from` to before `to`.
     pub fn pairs(
         &self,

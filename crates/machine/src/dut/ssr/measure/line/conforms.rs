@@ -11,7 +11,8 @@ use super::super::stage::Stage;
 use super::super::state::{Next, State};
 use super::leakage::{Seen, record_acts, seen};
 use super::stage::{AcStage, Shift};
-use super::{STORED, close, is_switched};
+use super::{STORED, close};
+use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_plan::{AcPlan, CLAMP_V, DIVIDER, Scales};
 use crate::dut::ssr::parameter::Parameter;
@@ -89,25 +90,23 @@ pub fn falling_acts(
         ]),
         Act::Wait(Span::seconds(2.0 * ac.half_s())),
         Act::Query(vec![points.level(Device::SmuIn, level_v)]),
-        Act::Wait(Span::seconds(scales.record_s) + STORED),
-        Act::Query(vec![
-            points.complete(),
-            points.channel(&scales, DIVIDED_CHANNEL),
-            points.channel(&scales, SHUNT_CHANNEL),
-        ]),
     ]);
+    acts.extend(recorded(&scales, &[DIVIDED_CHANNEL, SHUNT_CHANNEL], points));
     acts
 }
 
-/// Returns true when the record of the digitizer shows an output that blocks from `from_s` after its trigger on.
-pub fn blocks(ac: &AcPlan, given: &Given, from_s: f64) -> Result<bool, NotDelivered> {
+/// Returns true when the record of the digitizer shows an output that blocks from `from_s` after its trigger on; fails
+/// with the reason when the line shows nothing of the output.
+pub fn blocks(ac: &AcPlan, given: &Given, from_s: f64) -> Result<bool, Reason> {
     let all: [_; 2] = given.waveforms()?;
     let [divided, shunt] = all.map(|it| tail(&it, from_s));
     let seen = seen(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))?;
-    Ok(match seen {
-        Seen::Blocked(leak) => leak.rms_a(ac) <= (1.0 + ROOM) * ac.blocked_a,
-        Seen::Beyond | Seen::Half | Seen::Conducts | Seen::WrongMains => false,
-    })
+    match seen {
+        Seen::Blocked(leak) => Ok(leak.rms_a(ac) <= (1.0 + ROOM) * ac.blocked_a),
+        Seen::Beyond | Seen::Half | Seen::Conducts => Ok(false),
+        Seen::WrongMains => Err(Finding::WrongMains.into()),
+        Seen::Dead => Err(Finding::LineDead.into()),
+    }
 }
 
 /// Concludes a turn-off test.
@@ -117,10 +116,7 @@ pub fn conclude_blocks(
     plan: &Plan,
     ac: &AcPlan,
     given: &Given,
-) -> Result<Next, NotDelivered> {
-    if !is_switched(state, given) {
-        return Ok(Next::Planned);
-    }
+) -> Result<Next, Reason> {
     let of = Parameter::TurnOffVoltage;
     let from_s = if shift == Shift::Late {
         0.0
@@ -185,7 +181,11 @@ fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Ve
         Act::Wait(Span::seconds(LATE_S)),
         Act::Query(vec![points.force_trigger()]),
     ]);
-    acts.extend(recorded(&scales, points));
+    acts.extend(recorded(
+        &scales,
+        &[DIVIDED_CHANNEL, OUTPUT_CHANNEL],
+        points,
+    ));
     acts
 }
 
@@ -209,19 +209,19 @@ pub fn rising_acts(
         Act::Wait(Span::seconds(ac.half_s() + plan.time_constant_s)),
         Act::Query(vec![points.level(Device::SmuIn, level_v)]),
     ]);
-    acts.extend(recorded(&scales, points));
+    acts.extend(recorded(
+        &scales,
+        &[DIVIDED_CHANNEL, OUTPUT_CHANNEL],
+        points,
+    ));
     acts
 }
 
-/// Returns the acts that wait for the end of a record and read both channels of the output.
-fn recorded(scales: &Scales, points: &Points) -> [Act; 2] {
+/// Returns the acts that wait for the end of a record and read channels of it.
+fn recorded(scales: &Scales, channels: &[f64], points: &Points) -> [Act; 2] {
     [
         Act::Wait(Span::seconds(scales.record_s) + STORED),
-        Act::Query(vec![
-            points.complete(),
-            points.channel(scales, DIVIDED_CHANNEL),
-            points.channel(scales, OUTPUT_CHANNEL),
-        ]),
+        Act::Query(points.record(scales, channels)),
     ]
 }
 
@@ -263,9 +263,6 @@ pub fn conclude_conducts(
     ac: &AcPlan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    if !is_switched(state, given) {
-        return Ok(Next::Planned);
-    }
     let of = Parameter::TurnOnVoltage;
     let from_s = if shift == Shift::Late { 0.0 } else { plan.on_s };
     match (conducting(ac, given, from_s)?, shift) {

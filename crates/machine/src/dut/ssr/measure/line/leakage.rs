@@ -4,10 +4,11 @@ use super::super::board::Position;
 use super::super::given::{Given, NotDelivered};
 use super::super::state::{Next, State};
 use super::stage::AcStage;
-use super::{STORED, close, is_switched};
+use super::{STORED, close};
+use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy::{self as accuracy, LeakageOf};
-use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LINE_SHUNT_OHM, Scales};
+use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LINE_OHM, LINE_SHUNT_OHM, Scales};
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
@@ -24,8 +25,11 @@ use units::{Span, Unit};
 const BLOCKED: f64 = 0.8;
 /// Divisions from the middle of the screen at which a reading counts as over range.
 const FULL: f64 = 3.9;
-/// A polarity whose peak is below this share of the nominal one counts as conducting.
+/// A polarity whose peak is below this share of the nominal one and which carries current counts as conducting.
 const CONDUCTS: f64 = 0.3;
+/// Least peak of that current, as a share of the nominal one through the load alone; the load then has at least 1 minus
+/// [`CONDUCTS`] of the voltage.
+const CARRIES: f64 = 0.5;
 
 /// Result of reading a record of a blocked output.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +44,8 @@ pub enum Seen {
     Conducts,
     /// The line does not have its nominal voltage.
     WrongMains,
+    /// Neither voltage nor current comes from the line.
+    Dead,
 }
 
 /// Current of a blocked output.
@@ -76,11 +82,7 @@ pub fn record_acts(
     acts.extend(besides.map(|it| Act::Query(vec![it])));
     acts.extend([
         Act::WaitSinceMark(Span::seconds(scales.record_s) + STORED),
-        Act::Query(vec![
-            points.complete(),
-            points.channel(scales, DIVIDED_CHANNEL),
-            points.channel(scales, SHUNT_CHANNEL),
-        ]),
+        Act::Query(points.record(scales, &[DIVIDED_CHANNEL, SHUNT_CHANNEL])),
     ]);
     acts
 }
@@ -122,14 +124,16 @@ pub fn seen_at(
     if !volts.is_beside(&current) || volts.is_empty() {
         return None;
     }
-    let (low_v, high_v) = (0..volts.len()).fold((0.0, 0.0), |ends: (f64, f64), it| {
-        (ends.0.min(volts.at(it)), ends.1.max(volts.at(it)))
-    });
-    let conducts = |most_v: f64| most_v < CONDUCTS * peak_v;
-    match (conducts(-low_v), conducts(high_v)) {
-        (true, true) => return Some(Seen::Conducts),
-        (true, false) | (false, true) => return Some(Seen::Half),
-        (false, false) => {}
+    let is_low = |sign| volts.peak(sign) < CONDUCTS * peak_v;
+    // The channel shows a current up to its end.
+    let carried_a = end_a.min(CARRIES * peak_v / LINE_OHM);
+    let carries = |sign| current.peak(sign) >= carried_a;
+    match [1.0, -1.0].map(|sign| (is_low(sign), carries(sign))) {
+        [(true, true), (true, true)] => return Some(Seen::Conducts),
+        [(true, false), (true, false)] => return Some(Seen::Dead),
+        [(true, true), (false, _)] | [(false, _), (true, true)] => return Some(Seen::Half),
+        [(true, _), _] | [_, (true, _)] => return Some(Seen::WrongMains),
+        [(false, _), (false, _)] => {}
     }
     if current.reaches(end_a) {
         return Some(Seen::Beyond);
@@ -188,10 +192,7 @@ pub fn conclude(
     plan: &Plan,
     ac: &AcPlan,
     given: &Given,
-) -> Result<Next, NotDelivered> {
-    if !is_switched(state, given) {
-        return Ok(Next::Planned);
-    }
+) -> Result<Next, Reason> {
     let is_hot = stage == AcStage::LeakageHot;
     let [divided, shunt] = given.waveforms()?;
     let seen = seen(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))?;
@@ -205,6 +206,7 @@ pub fn conclude(
         Seen::Beyond => {}
         Seen::Half | Seen::Conducts => state.record.stop(conducting),
         Seen::WrongMains => state.record.stop(Finding::WrongMains),
+        Seen::Dead => state.record.stop(Finding::LineDead),
     }
     Ok(Next::Planned)
 }

@@ -4,7 +4,7 @@
 use super::super::board::Position;
 use super::super::given::{Given, NotDelivered};
 use super::super::state::{Next, State};
-use super::{STORED, close, is_switched, leave};
+use super::{STORED, close, leave};
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
 use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LOOP_SHUNT_OHM};
@@ -44,13 +44,9 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
         Act::Wait(Span::seconds(scales.record_s) + STORED),
     ]);
     acts.extend(leave(state, points));
-    acts.push(Act::Query(vec![
-        points.complete(),
-        points.channel(&scales, DIVIDED_CHANNEL),
-        points.channel(&scales, OUTPUT_CHANNEL),
-        points.channel(&scales, SHUNT_CHANNEL),
-        points.off(Device::SmuIn),
-    ]));
+    let mut queries = points.record(&scales, &[DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL]);
+    queries.push(points.off(Device::SmuIn));
+    acts.push(Act::Query(queries));
     acts
 }
 
@@ -257,9 +253,6 @@ pub fn conclude(
     ac: &AcPlan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    if !is_switched(state, given) {
-        return Ok(Next::Planned);
-    }
     let [whole, volts, shunt] = given.waveforms()?;
     let drops = Drops::of(ac, state.references, [&whole, &volts, &shunt]);
     let Some(on) = drops

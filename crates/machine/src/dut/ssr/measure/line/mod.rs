@@ -1,7 +1,7 @@
 //! The AC circuits, line and loop: contactors, source, and the records that the stages of an AC part take there.
 //!
 //! A contactor closes only after the mirror contacts of both have shown them open. A stage goes on only when the mirror
-//! contacts show what it has switched; else the runner skips the acts that follow, and the test ends. The loop closes
+//! contacts show what it has switched; else the runner skips the acts that follow, and [`switched`] ends the test. The loop closes
 //! only after the source has been measured at its low voltage.
 
 pub mod conforms;
@@ -14,6 +14,7 @@ pub mod train;
 use super::board::{Position, RELAY};
 use super::given::Given;
 use super::state::{Next, State};
+use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_plan::{AcPlan, LINE_OHM, LOOP_OHM};
 use crate::dut::ssr::points::{Device, DigitalIn, Points};
@@ -124,6 +125,8 @@ pub fn close(state: &mut State, to: Position, ac: &AcPlan, points: &Points) -> V
     }
     acts.push(Act::Set(points.outputs(to.outputs())));
     acts.push(match is_beside {
+        // The train waits longer than the relay needs, from this mark on.
+        true if to == Position::LinePulsed => Act::Mark,
         true => Act::Wait(RELAY),
         false => contacts(points, to),
     });
@@ -134,19 +137,12 @@ pub fn close(state: &mut State, to: Position, ac: &AcPlan, points: &Points) -> V
     acts
 }
 
-/// Returns true when the mirror contacts show the position in which the stage has left the contactors; else ends the
-/// test.
-pub fn is_switched(state: &mut State, given: &Given) -> bool {
-    let seen = |point| given.readings.states(given.points.input(point)).last();
-    let (line, ring) = expected(state.position);
-    let all = [(DigitalIn::LineOpen, line), (DigitalIn::LoopOpen, ring)];
-    let wrong = all
-        .into_iter()
-        .find(|(point, open)| seen(*point).is_some_and(|it| it != *open));
-    if let Some((point, _)) = wrong {
-        state.record.stop(Finding::Contactor.with(point.name()));
-    }
-    wrong.is_none()
+/// Fails with the mirror contact that has not shown a position to which the stage has switched.
+pub fn switched(given: &Given) -> Result<(), Reason> {
+    let own = DigitalIn::ALL.iter();
+    let mut wrong = own.filter(|it| given.readings.disagreed == Some(given.points.input(**it)));
+    let why = wrong.next().map(|it| Finding::Contactor.with(it.name()));
+    why.map_or(Ok(()), Err)
 }
 
 /// Concludes whether the source has the voltage of the loop; if not, the test ends with the loop open.

@@ -2,16 +2,17 @@
 //!
 //! Their relays switch only while neither line, loop nor source is connected.
 
-use super::super::board::RELAY;
+use super::super::board::{Position, RELAY};
 use super::super::given::{Given, NotDelivered};
 use super::super::state::{Next, State};
 use super::leakage::{Seen, seen_at};
 use super::stage::Reference;
-use super::{Level, STORED, is_switched, leave, line_level};
+use super::{BOUNCED, Level, STORED, contacts, leave, line_level};
+use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LINE_OHM, Scales};
 use crate::dut::ssr::plan::Plan;
-use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut, Points};
+use crate::dut::ssr::points::{Device, DigitalOut, Points};
 use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::references::References;
 use crate::dut::ssr::wave::Channel;
@@ -56,6 +57,14 @@ impl Reference {
         }
     }
 
+    /// Returns the channels to read.
+    const fn channels(self) -> &'static [f64] {
+        match self.is_on_line() {
+            true => &[DIVIDED_CHANNEL, SHUNT_CHANNEL],
+            false => &[DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL],
+        }
+    }
+
     fn scales(self, ac: &AcPlan) -> Scales {
         match self {
             Self::Zero | Self::Gain => Scales {
@@ -83,59 +92,46 @@ pub fn acts(
 ) -> Vec<Act> {
     let scales = reference.scales(ac);
     let (relays, connection) = reference.outputs();
-    let connected = [relays, connection].concat();
     let mut acts = match state.position.is_on_mains() {
         true => leave(state, points),
         false => Vec::new(),
     };
     acts.extend([Act::Set(points.outputs(relays)), Act::Wait(RELAY)]);
-    let mut queries = vec![points.capture_all(plan, &scales), points.force_trigger()];
     if reference.is_on_line() && state.level != Level::Line {
         acts.push(Act::Query(vec![line_level(state, ac, points)]));
     }
-    acts.push(Act::Set(points.outputs(&connected)));
+    acts.push(Act::Set(points.outputs(&[relays, connection].concat())));
     acts.push(Act::Wait(RELAY));
-    if reference.is_on_line() {
-        let open = [(DigitalIn::LineOpen, false), (DigitalIn::LoopOpen, true)];
-        acts.push(Act::Agree {
-            expected: open
-                .into_iter()
-                .map(|(it, on)| (points.input(it), on))
-                .collect(),
-            word: Arc::clone(&points.fixture),
-            within: super::SWITCHED,
-        });
-        acts.push(Act::Wait(super::BOUNCED));
-    }
-    if reference == Reference::Gain {
-        acts.push(Act::Query(vec![points.source(
-            Device::SmuOut,
-            ac.reference_v(),
-            &plan.load,
-        )]));
-        acts.push(Act::Wait(RELAY));
-    }
-    acts.push(Act::Query(std::mem::take(&mut queries)));
-    acts.push(Act::Wait(Span::seconds(scales.record_s) + STORED));
-    let mut reads = vec![points.complete()];
-    reads.extend(match reference.is_on_line() {
-        true => vec![
-            points.channel(&scales, DIVIDED_CHANNEL),
-            points.channel(&scales, SHUNT_CHANNEL),
-        ],
-        false => vec![
-            points.channel(&scales, DIVIDED_CHANNEL),
-            points.channel(&scales, OUTPUT_CHANNEL),
-            points.channel(&scales, SHUNT_CHANNEL),
-        ],
-    });
+    acts.extend(powered(reference, plan, ac, points));
+    let mut reads = points.record(&scales, reference.channels());
     reads.extend((reference == Reference::Gain).then(|| points.off(Device::SmuOut)));
-    acts.push(Act::Query(reads));
-    acts.push(Act::Set(points.outputs(relays)));
-    acts.push(Act::Wait(RELAY));
+    acts.extend([
+        Act::Query(vec![
+            points.capture_all(plan, &scales),
+            points.force_trigger(),
+        ]),
+        Act::Wait(Span::seconds(scales.record_s) + STORED),
+        Act::Query(reads),
+        Act::Set(points.outputs(relays)),
+        Act::Wait(RELAY),
+    ]);
     acts.extend(leave(state, points));
     acts.push(Act::Wait(RELAY));
     acts
+}
+
+/// Returns the acts after which a connected reference has its voltage.
+fn powered(reference: Reference, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec<Act> {
+    match reference {
+        Reference::Zero => Vec::new(),
+        Reference::Gain => {
+            let source = points.source(Device::SmuOut, ac.reference_v(), &plan.load);
+            vec![Act::Query(vec![source]), Act::Wait(RELAY)]
+        }
+        Reference::Ratio | Reference::Stray => {
+            vec![contacts(points, Position::Line), Act::Wait(BOUNCED)]
+        }
+    }
 }
 
 /// Concludes a reference. After the last one all of them are valid from `now` on.
@@ -145,10 +141,7 @@ pub fn conclude(
     ac: &AcPlan,
     given: &Given,
     now: RigTime,
-) -> Result<Next, NotDelivered> {
-    if !is_switched(state, given) {
-        return Ok(Next::Planned);
-    }
+) -> Result<Next, Reason> {
     let is_plausible = match reference {
         Reference::Zero | Reference::Gain => clamped(state, reference, ac, given)?,
         Reference::Ratio | Reference::Stray => line(state, reference, ac, given, now)?,
@@ -193,7 +186,7 @@ fn line(
     ac: &AcPlan,
     given: &Given,
     now: RigTime,
-) -> Result<bool, NotDelivered> {
+) -> Result<bool, Reason> {
     let [divided, shunt] = given.waveforms()?;
     // With the load the reference resistor divides the voltage of the line.
     let share = match reference {
@@ -206,8 +199,12 @@ fn line(
         reference.scales(ac).shunt_v,
         [&divided, &shunt],
     );
-    let Some(Seen::Blocked(leak)) = seen else {
-        return Ok(false);
+    let leak = match seen {
+        Some(Seen::Blocked(leak)) => leak,
+        Some(Seen::Dead) => return Err(Finding::LineDead.into()),
+        Some(Seen::Beyond | Seen::Half | Seen::Conducts | Seen::WrongMains) | None => {
+            return Ok(false);
+        }
     };
     if reference == Reference::Ratio {
         let siemens = Admittance {

@@ -1,10 +1,10 @@
 //! Train of control pulses whose period shifts the phase of the mains from pulse to pulse. One record gives the times,
 //! the voltage at turn-on, and the voltage at later half cycles.
 
-use super::super::board::Position;
+use super::super::board::{Position, RELAY};
 use super::super::given::{Given, NotDelivered};
 use super::super::state::{Next, Pulses, State};
-use super::{STORED, close, conclude_ready, is_switched, leave, loop_level};
+use super::{STORED, close, conclude_ready, leave, loop_level};
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
 use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER};
@@ -38,19 +38,14 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
     state.pulses = Pulses::Sent;
     acts.extend([
         Act::Query(queries),
-        // The digitizer needs the part of its record before the trigger.
-        Act::Wait(Span::seconds(
-            ac.half_s().max(2.0 * BEFORE * scales.record_s),
-        )),
+        // The digitizer needs the part of its record before the trigger, the output a zero of its current.
+        Act::Wait(Span::seconds(2.0 * BEFORE * scales.record_s)),
+        Act::WaitSinceMark(Span::seconds(ac.half_s()).max(RELAY)),
         Act::Query(vec![points.start()]),
         Act::Wait(Span::seconds(scales.record_s) + STORED),
     ]);
     acts.extend(leave(state, points));
-    let mut queries = vec![
-        points.complete(),
-        points.channel(&scales, DIVIDED_CHANNEL),
-        points.channel(&scales, OUTPUT_CHANNEL),
-    ];
+    let mut queries = points.record(&scales, &[DIVIDED_CHANNEL, OUTPUT_CHANNEL]);
     queries.extend(state.end_pulses(points));
     queries.extend(loop_level(state, ac, points));
     acts.push(Act::Query(queries));
@@ -127,9 +122,6 @@ pub fn conclude(
     ac: &AcPlan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    if !is_switched(state, given) {
-        return Ok(Next::Planned);
-    }
     conclude_ready(state, ac, given);
     let [divided, clamped] = given.waveforms()?;
     let Some(walk) = walk(ac, state.references, [&divided, &clamped]) else {

@@ -1,6 +1,6 @@
 //! AC parts for tests: true values, and errors of the fixture.
 
-use crate::dut::ssr::points::{Device, DigitalIn};
+use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut};
 
 /// True values of an AC part, and errors of the fixture.
 #[derive(Debug, Clone)]
@@ -34,6 +34,10 @@ pub struct Part {
     pub stray_f: f64,
     /// Inputs that the fixture never reports as on.
     pub stuck: Vec<DigitalIn>,
+    /// Contactors that do not close.
+    pub broken: Vec<DigitalOut>,
+    /// Number of the record on the line, from 0, from which on the line is dead.
+    pub dead_from: usize,
     pub failing: Option<(Device, &'static str)>,
     /// Ratio of the voltage that the source has to the one asked of it.
     pub source: f64,
@@ -64,6 +68,8 @@ pub fn good() -> Part {
         zero_v: 0.011,
         stray_f: 1e-9,
         stuck: Vec::new(),
+        broken: Vec::new(),
+        dead_from: usize::MAX,
         failing: None,
         source: 1.0,
         hz: 49.98,

@@ -30,6 +30,9 @@ impl LineBench {
     }
 
     fn source_v(&self, at_s: f64) -> f64 {
+        if self.is_dead {
+            return 0.0;
+        }
         let omega = TAU * self.part.hz;
         let shape = (omega * at_s).sin() + 0.02 * (3.0 * omega * at_s + 0.4).sin();
         SQRT_2 * self.level_v * shape
@@ -45,7 +48,8 @@ impl LineBench {
         } else {
             0.0
         };
-        let lit = self.is_lit(at_s, flow.was_lit) || (part.sticks && flow.has_fired);
+        let lit =
+            self.is_lit(at_s, flow.was_lit) || self.has_stuck || (part.sticks && flow.has_fired);
         if !lit && flow.polarity == 0.0 {
             flow.has_fired = false;
         }
@@ -79,6 +83,9 @@ impl LineBench {
     }
 
     pub fn renders(&mut self) {
+        let is_line = self.is_on(DigitalOut::LineContactor);
+        self.is_dead = is_line && self.line_records >= self.part.dead_from;
+        self.line_records += usize::from(is_line);
         let (record_s, points, _) = self.record;
         let (begins_s, step_s) = (self.begins_s.unwrap(), record_s / points);
         let reference = (
@@ -130,6 +137,7 @@ impl LineBench {
                 self.memory[channel].push((code / 2048.0 * full) as f32);
             }
         }
+        self.has_stuck |= self.part.sticks && flow.has_fired;
     }
 
     /// Returns the current of a blocked output, or of the reference, as the delayed channel shows it.
