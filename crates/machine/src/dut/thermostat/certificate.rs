@@ -9,7 +9,7 @@ use crate::dut::device::Made;
 use crate::gauge::Factor;
 use crate::gauge::factor::Named;
 use crate::rig::fault::Fault;
-use chamber::budget::Calibrations;
+use chamber::budget::{Calibrations, map_k};
 use serde::{Deserialize, Serialize};
 use units::Unit;
 
@@ -108,7 +108,7 @@ impl Certificate {
     pub fn remaining(&self) -> Calibrations {
         Calibrations {
             chain_k: Some(self.chain.u_k),
-            map_k: Some(self.map.u_k),
+            map_k: Some(map_k(self.map.u_k, self.map.excess_k)),
         }
     }
 }
@@ -211,6 +211,16 @@ mod tests {
         assert!((it.correct(100.2, 0, 25.0) - 100.3).abs() < 1e-9);
         assert!((it.correct(100.2, 1, 25.0) - 99.7).abs() < 1e-9);
         assert!((it.correct(62.655, 0, 25.0) - 62.65).abs() < 0.01);
+    }
+
+    #[test]
+    fn uncertainty_of_a_map_holds_at_its_own_excess() {
+        for excess_k in [30.0, 75.0] {
+            let mut it = certificate();
+            it.map.excess_k = excess_k;
+            let found = it.remaining().of_temperature(excess_k, 0.0).map_k;
+            assert!((found - 0.1).abs() < 1e-9, "{excess_k}: {found}");
+        }
     }
 
     #[test]
