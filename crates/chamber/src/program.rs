@@ -30,6 +30,25 @@ pub struct Pass {
     pub reset: Window,
 }
 
+impl Pass {
+    /// Returns the pass with its slow rate from where parts switch on. It still goes to the far ends of its windows for a
+    /// part that waits.
+    #[must_use]
+    pub fn entered(self, operate: Window, reset: Window) -> Self {
+        Self {
+            operate: Window {
+                low_c: operate.low_c,
+                ..self.operate
+            },
+            reset: Window {
+                high_c: reset.high_c,
+                ..self.reset
+            },
+            ..self
+        }
+    }
+}
+
 /// A pass with the lag for which its corners leave room. Both change together, so that a pass under way keeps the
 /// corners that its set point heads for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,14 +149,14 @@ impl Program {
         self.enter(Phase::Approach);
     }
 
-    /// Changes windows and lag of the passes to come, and of the present one during its approach. The caller does this
-    /// when earlier passes have shown where the parts switch.
+    /// Changes lag and begin of the windows ([`Pass::entered`]) of the passes to come, and of the present one during its
+    /// approach. The caller does this when earlier passes have shown where the parts switch.
     pub fn narrow(&mut self, operate: Window, reset: Window, lag_s: f64) {
         let approaches = self.phase == Phase::Approach;
         let first = self.number + usize::from(!approaches);
         for planned in self.passes.iter_mut().skip(first) {
             planned.lag_s = lag_s;
-            (planned.pass.operate, planned.pass.reset) = (operate, reset);
+            planned.pass = planned.pass.entered(operate, reset);
         }
         if approaches {
             self.enter(Phase::Approach);
@@ -283,7 +302,7 @@ mod tests {
     ];
 
     #[test]
-    fn a_pass_that_begins_is_narrowed() {
+    fn a_narrowed_pass_goes_on_to_its_far_ends() {
         let mut program = Program::new(25.0, vec![PASS; 2], 39.0, 45.0);
         run_until(&mut program, |it| it.pass() == 1);
         program.narrow(NARROW[0], NARROW[1], 39.0);
@@ -293,10 +312,19 @@ mod tests {
         let end_c = run_until(&mut program, |it| it.phase() == Phase::Cool);
         let reach_k = 3.0 + 1.3;
         let found = [start_c + 6.0, turn_c, end_c];
-        let expected = [84.0 - reach_k, 86.0 + reach_k, 64.0 - reach_k];
+        let expected = [84.0 - reach_k, 90.0 + reach_k, 58.0 - reach_k];
         for (found, expected) in found.into_iter().zip(expected) {
             assert!((found - expected).abs() < 0.3, "{found}, {expected}");
         }
+    }
+
+    #[test]
+    fn a_second_tray_beyond_the_first_switches() {
+        let narrow = PASS.entered(NARROW[0], NARROW[1]);
+        let mut program = Program::new(25.0, vec![narrow], 39.0, 45.0);
+        run_until(&mut program, |it| it.phase() == Phase::Rise);
+        let turn_c = run_until(&mut program, |it| it.phase() == Phase::Descent);
+        assert!((turn_c - (90.0 + 3.0 + 1.3)).abs() < 0.3, "{turn_c}");
     }
 
     #[test]

@@ -1,19 +1,19 @@
 //! Runs the chamber second by second: identification, rest, passes.
 
 use super::super::Finding;
-use super::super::device::{Device, Lesson};
+use super::super::device::Device;
 use super::super::recipe::Control;
 use super::contacts::Events;
 use super::repeat::{self, Shown};
 use super::trial::Trial;
+use super::windows::{planned, shown};
 use crate::dut::experiment::Experiment;
 use chamber::control::increment::{Increment, Rules};
 use chamber::control::pid::Pid;
 use chamber::control::scheduled::{FuzzyPid, Symmetry};
 use chamber::control::split_range::{Command, SplitRange};
 use chamber::control::{Controller, Law, Observed};
-use chamber::lag::{Record, Transition};
-use chamber::plan::narrowed;
+use chamber::lag::Record;
 use chamber::program::{Phase, Program, Waiting, Window};
 use chamber::tune::identify::{Identification, Step};
 use chamber::tune::{Identified, Settings};
@@ -143,6 +143,14 @@ impl Work {
         }
     }
 
+    /// Returns when the present pass began, s of the record; `None` before and in the first one.
+    pub fn later_pass_s(&self) -> Option<f64> {
+        match self {
+            Self::Identification(_) | Self::Rest(..) | Self::Trial(_) => None,
+            Self::Passes(passes) => passes.later_pass_s,
+        }
+    }
+
     /// Returns the identified response of the chamber; `None` until it is known.
     pub fn chamber(&self) -> Option<Identified> {
         match self {
@@ -165,6 +173,8 @@ pub struct Passes {
     slope: SlidingSlope,
     /// Number of passes.
     passes: usize,
+    /// When the present pass began, s of the record; `None` in the first one.
+    later_pass_s: Option<f64>,
     /// Seconds in the present phase.
     stayed_s: u32,
     lag_s: f64,
@@ -184,11 +194,7 @@ impl Passes {
             .windows(&device.recipe.limits)
             .unwrap_or_else(|| panic!("a recipe without windows is not feasible"));
         let lesson = device.lesson.as_deref();
-        let [operate, reset] = lesson.map_or(expected, |it| it.windows);
-        let batch = lesson.map_or(0, |it: &Lesson| it.batch);
-        let knows = lesson.is_some_and(|it| it.lag.is_some());
-        let batch = usize::try_from(batch).unwrap_or(usize::MAX);
-        let all = thermostat.strategy().passes(batch, knows, operate, reset);
+        let all = planned(&thermostat.strategy(), lesson, expected);
         let lag_s = lesson
             .and_then(|it| it.lag)
             .map_or(thermostat.part.lag_s, |it| it.seconds);
@@ -200,6 +206,7 @@ impl Passes {
             controller: controller(device, found),
             watch: Watch::new(found),
             slope: SlidingSlope::default(),
+            later_pass_s: None,
             stayed_s: 0,
             lag_s,
             expected,
@@ -235,6 +242,7 @@ impl Passes {
             0
         };
         if pass > before.1 {
+            self.later_pass_s = Some(record.seconds() as f64);
             let events: Vec<Events> = parts().into_iter().map(|it| it.events).collect();
             let [operate, reset] = self.shown(record, &events);
             self.program.narrow(operate, reset, self.lag_s);
@@ -310,21 +318,6 @@ impl Passes {
         let [operate, reset] = self.expected;
         shown(record, events, self.lag_s, [operate, reset])
     }
-}
-
-/// Returns the operate and reset windows, narrowed to the temperatures at which the contacts last switched.
-pub fn shown(record: &Record, events: &[Events], lag_s: f64, expected: [Window; 2]) -> [Window; 2] {
-    let filtered = record.filtered(lag_s);
-    let window = |of: &dyn Fn(&Events) -> Option<Transition>, expected: Window| {
-        let last = |it: &Events| filtered.at(of(it)?.first_s).map(|at| at.celsius);
-        let temperatures: Vec<f64> = events.iter().filter_map(last).collect();
-        narrowed(&temperatures, expected)
-    };
-    let [operate, reset] = expected;
-    [
-        window(&|it| it.switching.operate.last().copied(), operate),
-        window(&|it| it.switching.reset.last().copied(), reset),
-    ]
 }
 
 fn controller(device: &Device, chamber: &Identified) -> Controller {

@@ -220,14 +220,16 @@ impl Seconds {
         let reference_c = Some(reading.value);
         self.last = Some(reading);
         self.check_chain(device, now, image)?;
-        let now_s = now.since(self.origin).as_seconds();
+        let later_pass_s = self.work.as_ref().and_then(Work::later_pass_s);
         let seen = Seen {
             control_c,
             reference_c,
             ambient_c: self.ambient_c,
-            waiting: waiting(contacts, now_s),
+            waiting: waiting(contacts, (now, self.origin), later_pass_s),
         };
-        let parts = || contacts.iter().filter_map(|it| part(device, it)).collect();
+        let origin = self.origin;
+        let shown = |it| part(device, it, origin);
+        let parts = || contacts.iter().filter_map(shown).collect();
         self.check_sensors(&seen)?;
         let Some(work) = &mut self.work else {
             return Ok(Some(Command::OFF));
@@ -313,11 +315,11 @@ impl Seconds {
 }
 
 /// Returns what the contact of a part has shown so far.
-fn part(device: &Device, contact: &Contact) -> Option<Shown> {
+fn part(device: &Device, contact: &Contact, origin: RigTime) -> Option<Shown> {
     let socket = device.points.of_contact(contact.input())?;
     Some(Shown {
         socket: socket.number,
-        events: contact.events(),
+        events: contact.events(origin),
     })
 }
 
@@ -334,11 +336,18 @@ fn usable(image: &Image, point: Thermometer) -> Option<Sample> {
     (sample.quality == Quality::Good && sample.value.is_finite()).then(|| sample.clone())
 }
 
-/// Counts the sockets that have yet to switch; a contact that was open when cold does not count.
-fn waiting(contacts: &[Contact], now_s: f64) -> Waiting {
-    let live = contacts.iter().filter(|it| it.cold() == Some(true));
+/// Counts the sockets that have yet to switch. A contact that was open when cold does not count, nor one that a whole pass
+/// has left in its state.
+fn waiting(
+    contacts: &[Contact],
+    (now, origin): (RigTime, RigTime),
+    later_pass_s: Option<f64>,
+) -> Waiting {
+    let live = contacts
+        .iter()
+        .filter(|it| it.cold() == Some(true) && !it.events(origin).is_stuck(later_pass_s));
     let (operated, all) = live.fold((0, 0), |(operated, all), it| {
-        (operated + usize::from(it.is_open(now_s)), all + 1)
+        (operated + usize::from(it.is_open(now)), all + 1)
     });
     Waiting {
         operate: all - operated,
