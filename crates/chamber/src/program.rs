@@ -10,6 +10,9 @@ pub const TRAVEL_K_PER_MIN: f64 = 10.0;
 /// The set point has reached the rate of the pass this far before a window, K; the lag at that rate comes in addition.
 pub const MARGIN_K: f64 = 3.0;
 
+/// Corners of a pass, at each of which the rate blends.
+const CORNERS: f64 = 4.0;
+
 /// A range of switching temperatures of parts, C.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
@@ -46,6 +49,17 @@ impl Pass {
             },
             ..self
         }
+    }
+
+    /// Returns the planned time of the pass, s, with a part that waits to the ends of both windows and with the way from
+    /// the end of another such pass; `lag_s`: the lag of the parts.
+    pub fn longest_s(self, lag_s: f64) -> f64 {
+        let planned = Planned { pass: self, lag_s };
+        let ([start_c, turn_c], [top_c, end_c]) = (planned.rise(), planned.fall());
+        let within_k = turn_c - start_c + top_c - end_c;
+        let between_k = (start_c - end_c).abs() + (turn_c - top_c).abs();
+        let minutes = within_k / self.rate_k_per_min + between_k / TRAVEL_K_PER_MIN;
+        60.0 * minutes + CORNERS * BLEND_S
     }
 }
 
@@ -267,6 +281,26 @@ mod tests {
     fn a_socket_that_never_operates_ends_at_the_window() {
         let found = phases(1, [200.0, 65.0]);
         assert!((found[2].1 - (90.0 + 3.0 + 1.3)).abs() < 0.2, "{found:?}");
+    }
+
+    #[test]
+    fn a_pass_keeps_its_planned_time() {
+        let mut program = Program::new(54.0, vec![PASS], 39.0, 45.0);
+        let mut took_s = 0.0;
+        while program.phase() != Phase::Cool {
+            let set = program.set_point();
+            let waiting = Waiting {
+                operate: 1,
+                reset: 1,
+            };
+            program.step(set.value_c, waiting);
+            took_s += 1.0;
+        }
+        let planned_s = PASS.longest_s(39.0);
+        assert!(
+            (0.8..=1.0).contains(&(took_s / planned_s)),
+            "{took_s} of {planned_s}"
+        );
     }
 
     #[test]

@@ -9,6 +9,7 @@
 //! | what is measured, and on which list a part that fails leaves | [`parameter`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | what the rig must have for it | [`feasible`] |
+//! | how long a batch takes | [`duration`] |
 //! | which points of the rig it needs | [`points`] |
 //! | what a test finds in addition to figures | [`finding`] |
 //! | the keys of its recipe and of the certificate | [`keys`] |
@@ -21,6 +22,7 @@
 pub mod card;
 pub mod certificate;
 pub mod device;
+pub mod duration;
 pub mod feasible;
 pub mod finding;
 pub mod keys;

@@ -20,8 +20,8 @@ mod seconds;
 mod trial;
 mod windows;
 
-use super::Finding;
 use super::device::Device;
+use super::{Finding, duration};
 use crate::dut::batch::{BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble};
 use crate::dut::batch_shown::{BatchShown, SocketSwitched};
 use crate::dut::experiment::Experiment;
@@ -52,8 +52,6 @@ named! {
     }
 }
 
-/// Longest duration of a batch.
-const LONGEST: Span = Span::ms(6 * 3_600_000);
 /// Time in which the scan reads every contact at least once.
 const SEEN: Span = Span::ms(1_000);
 
@@ -308,7 +306,9 @@ impl BatchTest for Test {
     }
 
     fn longest(&self) -> Span {
-        LONGEST
+        let recipe = &self.device.recipe;
+        let repeats = recipe.decision.slow_repeats;
+        duration::longest(&self.device.thermostat, &recipe.limits, repeats)
     }
 
     fn shown(&self) -> BatchShown {
