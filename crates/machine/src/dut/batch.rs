@@ -64,6 +64,8 @@ pub enum BatchTrouble {
     AirflowLost,
     /// The mains of the heater have failed.
     MainsLost,
+    /// Limiter, airflow switch or mains relay has no fresh reading.
+    ChainNotRead,
     /// Sockets whose contact was open before heating, in words; the test goes on.
     SocketsOpen(String),
     /// Lag of the lot, s, and the one that earlier batches or the recipe state; the test goes on.

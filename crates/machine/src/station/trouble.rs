@@ -80,6 +80,7 @@ impl From<BatchTrouble> for Alarm {
             BatchTrouble::LimiterTripped => AlarmCode::LimiterTripped.into(),
             BatchTrouble::AirflowLost => AlarmCode::AirflowLost.into(),
             BatchTrouble::MainsLost => AlarmCode::MainsLost.into(),
+            BatchTrouble::ChainNotRead => AlarmCode::ChainNotRead.into(),
             BatchTrouble::SocketsOpen(sockets) => {
                 Self::from(AlarmCode::SocketsOpen).with("sockets", sockets)
             }

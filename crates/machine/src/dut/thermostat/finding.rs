@@ -50,11 +50,13 @@ pub enum Finding {
     AirflowLost,
     /// The mains of the heater have failed.
     MainsLost,
+    /// An input of limiter, airflow or mains has no fresh reading.
+    ChainNotRead,
 }
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::OpenCold,
         Self::Intermittent,
         Self::NeverOperates,
@@ -76,6 +78,7 @@ impl Finding {
         Self::LimiterTripped,
         Self::AirflowLost,
         Self::MainsLost,
+        Self::ChainNotRead,
     ];
 
     /// Returns the code of the finding and its consequence for the part: failed or void, and its list.
@@ -102,6 +105,7 @@ impl Finding {
             Self::LimiterTripped => Entry::void("chamber_limiter_tripped"),
             Self::AirflowLost => Entry::void("chamber_airflow_lost"),
             Self::MainsLost => Entry::void("chamber_mains_lost"),
+            Self::ChainNotRead => Entry::void("chamber_chain_not_read"),
         }
     }
 
@@ -129,6 +133,7 @@ impl Finding {
             Self::LimiterTripped => BatchTrouble::LimiterTripped,
             Self::AirflowLost => BatchTrouble::AirflowLost,
             Self::MainsLost => BatchTrouble::MainsLost,
+            Self::ChainNotRead => BatchTrouble::ChainNotRead,
         };
         Some(trouble)
     }

@@ -26,6 +26,8 @@ use units::{RigTime, Span, Volt};
 const SECOND: Span = Span::ms(1_000);
 /// Time after which the safety chain must be closed, s: the airflow switch needs it.
 const CHAIN_S: usize = 15;
+/// Time after which every input of the chain must have been read, s.
+const READ_S: usize = 3;
 /// Greatest age of an input of the safety chain that counts.
 const FRESH: Span = Span::ms(2_000);
 /// Range of room temperatures in which a chamber may stand, C.
@@ -302,15 +304,23 @@ impl Seconds {
     }
 
     fn check_chain(&self, device: &Device, now: RigTime, image: &Image) -> Result<(), Finding> {
-        let is_open = |it| image.input(it, now, FRESH) == Some(false);
-        let [limiter, airflow, mains] = device.points.chain.map(is_open);
-        let settled = self.record.seconds() > CHAIN_S;
-        match (limiter, mains, airflow && settled) {
-            (true, _, _) => Err(Finding::LimiterTripped),
-            (false, true, _) => Err(Finding::MainsLost),
-            (false, false, true) => Err(Finding::AirflowLost),
-            (false, false, false) => Ok(()),
-        }
+        let read = device.points.chain.map(|it| image.input(it, now, FRESH));
+        broken_link(read, self.record.seconds()).map_or(Ok(()), Err)
+    }
+}
+
+/// Returns what limiter, airflow and mains, read in this order, say after some seconds with the fan on; `None` for an input
+/// that was not read for two seconds.
+fn broken_link([limiter, airflow, mains]: [Option<bool>; 3], seconds: usize) -> Option<Finding> {
+    let is_open = |it: Option<bool>| it == Some(false);
+    let unread = [limiter, airflow, mains].contains(&None) && seconds > READ_S;
+    let still = is_open(airflow) && seconds > CHAIN_S;
+    match (is_open(limiter), is_open(mains), still, unread) {
+        (true, _, _, _) => Some(Finding::LimiterTripped),
+        (false, true, _, _) => Some(Finding::MainsLost),
+        (false, false, true, _) => Some(Finding::AirflowLost),
+        (false, false, false, true) => Some(Finding::ChainNotRead),
+        (false, false, false, false) => None,
     }
 }
 
@@ -352,5 +362,28 @@ fn waiting(
     Waiting {
         operate: all - operated,
         reset: operated,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unread_link_of_the_chain_is_trouble() {
+        let on = Some(true);
+        assert_eq!(broken_link([on; 3], 100), None);
+        for place in 0..3 {
+            let mut read = [on; 3];
+            read[place] = None;
+            assert_eq!(broken_link(read, 100), Some(Finding::ChainNotRead));
+            assert_eq!(broken_link(read, 1), None);
+        }
+    }
+
+    #[test]
+    fn an_open_link_says_more_than_an_unread_one() {
+        let read = [None, Some(true), Some(false)];
+        assert_eq!(broken_link(read, 100), Some(Finding::MainsLost));
     }
 }
