@@ -738,6 +738,7 @@ detail-impossible_motion = { $said }
 detail-input = { $input }
 detail-calibration_out = { $said }
 detail-calibration_not_verified = { $said }
+detail-calibration_differs = { $said }
 
 ## Members of a history query
 

@@ -709,6 +709,7 @@ detail-impossible_motion = 动作超出行程或工件尺寸
 detail-input = 安全输入“{ $input }”
 detail-calibration_out = 校准已于 { $at } 过期，请先运行 `relayrig calibrate`
 detail-calibration_not_verified = { $at } 的校准最近一次核验未通过，请先运行 `relayrig calibrate`
+detail-calibration_differs = 证书文件与 { $at } 存入的证书不同，请先运行 `relayrig calibrate`
 
 ## Members of a question to the history
 

@@ -14,6 +14,7 @@
 //! | what a test finds in addition to figures | [`finding`] |
 //! | the keys of its recipe and of the certificate | [`keys`] |
 //! | calibration of thermometer chain and sockets | [`certificate`] |
+//! | date of that calibration | [`issued`] |
 //! | response of the chamber, as a file states it | [`response`] |
 //! | what outlives a batch | [`device`] |
 //! | the test of a batch | [`measure`] |
@@ -25,6 +26,7 @@ pub mod device;
 pub mod duration;
 pub mod feasible;
 pub mod finding;
+pub mod issued;
 pub mod keys;
 pub mod made_up;
 pub mod measure;
