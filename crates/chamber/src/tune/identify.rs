@@ -178,17 +178,8 @@ impl Identification {
     /// Finds the temperature around a chamber that was cooled: the one that balances fan, losses and vent at the end of the
     /// cooling.
     fn find_ambient(&mut self, found: &Identified) {
-        let Some(Cooled {
-            end_c,
-            slope_k_per_s,
-        }) = self.cooled
-        else {
-            return;
-        };
-        let heated = found.fan - slope_k_per_s / found.slope_k_per_s;
-        let removed_per_k = found.loss_per_k + found.vent_per_k;
-        if removed_per_k > 0.0 {
-            self.ambient_c = end_c - heated / removed_per_k;
+        if let Some(ambient_c) = self.cooled.and_then(|it| it.ambient_c(found)) {
+            self.ambient_c = ambient_c;
         }
     }
 

@@ -1,7 +1,7 @@
 //! The test of a batch: contact resistances, identification of the chamber, passes through the windows, heat off.
 //!
 //! ```text
-//! contacts -> identification (first batch of a run) -> passes -> off
+//! contacts -> identification, or room for a stated response (first batch of a run) -> passes -> off
 //! ```
 //! Signals: the contacts in the image, which the scan reads all the time, and the two thermometers of the chamber, read
 //! once a second. The program gives the set point to the controller, which commands heater and vent.
@@ -295,7 +295,8 @@ impl BatchTest for Test {
         let stage = match &self.state {
             State::Cold(_) | State::Drops(..) => Stage::Contacts,
             State::Seconds(seconds) => match &seconds.work {
-                None | Some(Work::Identification(_) | Work::Rest(..) | Work::Trial(_)) => {
+                None
+                | Some(Work::Identification(_) | Work::Room(_) | Work::Rest(..) | Work::Trial(_)) => {
                     Stage::Identification
                 }
                 Some(Work::Passes(_)) => Stage::Passes,

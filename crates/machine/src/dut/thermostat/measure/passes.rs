@@ -1,4 +1,4 @@
-//! Runs the chamber second by second: identification, rest, passes.
+//! Runs the chamber second by second: identification or search for the room, rest, passes.
 
 use super::super::Finding;
 use super::super::device::Device;
@@ -16,6 +16,7 @@ use chamber::control::{Controller, Law, Observed};
 use chamber::lag::Record;
 use chamber::program::{Phase, Program, Waiting, Window};
 use chamber::tune::identify::{Identification, Step};
+use chamber::tune::room::{self, RoomSearch};
 use chamber::tune::{Identified, Settings};
 use chamber::watch::slope::SlidingSlope;
 use chamber::watch::{Second, Watch};
@@ -57,6 +58,8 @@ pub struct Known {
 pub enum Work {
     /// Identification of the chamber, with a step of the heater.
     Identification(Box<Identification>),
+    /// Search for the temperature of the room around a chamber whose response the plant states.
+    Room(Box<RoomSearch>),
     /// Rest with the fan only, for the remaining seconds.
     Rest(Known, u32),
     /// Passes through the windows.
@@ -66,12 +69,18 @@ pub enum Work {
 }
 
 impl Work {
-    /// Starts with an identification, unless the response of the chamber is known. Then starts with a rest, because the
-    /// chamber may still give off heat of an earlier batch. An experiment always identifies.
+    /// Starts with an identification, unless the response of the chamber is known: from an earlier batch, whose heat it may
+    /// still give off, so that it rests; or from the plant, which does not know the room. An experiment always identifies.
     pub fn new(device: &Device, is_experiment: bool, ambient_c: f64, operate_c: f64) -> Self {
-        match device.response().filter(|_| !is_experiment) {
-            Some(chamber) => Self::Rest(Known { chamber, ambient_c }, REST_S),
-            None => {
+        let lesson = device.lesson.as_deref().filter(|_| !is_experiment);
+        let stated = device.stated.filter(|_| !is_experiment);
+        match (lesson, stated) {
+            (Some(lesson), _) => {
+                let chamber = lesson.chamber;
+                Self::Rest(Known { chamber, ambient_c }, REST_S)
+            }
+            (None, Some(stated)) => Self::Room(Box::new(RoomSearch::new(&stated.identified()))),
+            (None, None) => {
                 let run = Identification::new(STEP, ambient_c, operate_c);
                 Self::Identification(Box::new(run))
             }
@@ -111,6 +120,17 @@ impl Work {
                 }
                 Err(_) => Err(Finding::NotIdentified),
             },
+            Self::Room(search) => match search.step(control_c) {
+                room::Step::Go(command) => Ok(Some(command)),
+                room::Step::Done { room_c, vented } => {
+                    let known = Known {
+                        chamber: search.chamber(),
+                        ambient_c: room_c,
+                    };
+                    *self = Self::Rest(known, if vented { REST_S } else { 0 });
+                    Ok(Some(Command::OFF))
+                }
+            },
             Self::Rest(known, 0) => {
                 let passes = Passes::new(device, known, control_c);
                 *self = Self::Passes(Box::new(passes));
@@ -128,15 +148,15 @@ impl Work {
     /// Returns the set point of this second, C; `None` before the passes.
     pub fn set_c(&self) -> Option<f64> {
         match self {
-            Self::Identification(_) | Self::Rest(..) | Self::Trial(_) => None,
+            Self::Identification(_) | Self::Room(_) | Self::Rest(..) | Self::Trial(_) => None,
             Self::Passes(passes) => Some(passes.program.set_point().value_c),
         }
     }
 
-    /// Returns the temperature of the room, C, once the response of the chamber is known; `None` before.
+    /// Returns the temperature of the room, C, once response and room are known; `None` before.
     pub fn ambient_c(&self) -> Option<f64> {
         match self {
-            Self::Identification(_) => None,
+            Self::Identification(_) | Self::Room(_) => None,
             Self::Rest(known, _) => Some(known.ambient_c),
             Self::Passes(passes) => Some(passes.ambient_c),
             Self::Trial(trial) => Some(trial.ambient_c()),
@@ -146,7 +166,7 @@ impl Work {
     /// Returns when the present pass began, s of the record; `None` before and in the first one.
     pub fn later_pass_s(&self) -> Option<f64> {
         match self {
-            Self::Identification(_) | Self::Rest(..) | Self::Trial(_) => None,
+            Self::Identification(_) | Self::Room(_) | Self::Rest(..) | Self::Trial(_) => None,
             Self::Passes(passes) => passes.later_pass_s,
         }
     }
@@ -155,6 +175,7 @@ impl Work {
     pub fn chamber(&self) -> Option<Identified> {
         match self {
             Self::Identification(_) => None,
+            Self::Room(search) => Some(search.chamber()),
             Self::Rest(known, _) => Some(known.chamber),
             Self::Passes(passes) => Some(passes.chamber),
             Self::Trial(trial) => Some(trial.chamber()),

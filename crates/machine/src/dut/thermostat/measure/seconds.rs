@@ -255,7 +255,10 @@ impl Seconds {
     pub fn shown(&self) -> BatchShown {
         let passes = match &self.work {
             Some(Work::Passes(passes)) => passes.progress(),
-            None | Some(Work::Identification(_) | Work::Rest(..) | Work::Trial(_)) => None,
+            None
+            | Some(Work::Identification(_) | Work::Room(_) | Work::Rest(..) | Work::Trial(_)) => {
+                None
+            }
         };
         let (pass, passes) = passes.unzip();
         let percent = |share: f64| (share * 1000.0).round() / 10.0;
