@@ -48,5 +48,5 @@ pub const DEFINITION: KindDefinition = KindDefinition {
     bins: &[parameter::CONTACT, parameter::TEMPERATURE, parameter::SNAP],
     characteristics: || Parameter::ALL.map(Into::into).to_vec(),
     stages: || measure::Stage::NAMES.to_vec(),
-    findings: || Finding::ALL.map(Into::into).to_vec(),
+    findings: || Finding::all().map(Into::into).collect(),
 };

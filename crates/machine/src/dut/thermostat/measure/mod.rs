@@ -22,7 +22,9 @@ mod windows;
 
 use super::device::Device;
 use super::{Finding, duration};
-use crate::dut::batch::{BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble};
+use crate::dut::batch::{
+    BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, HeatTrouble,
+};
 use crate::dut::batch_shown::{BatchShown, SocketSwitched};
 use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
@@ -252,7 +254,9 @@ impl Test {
         };
         let troubles = match why {
             Some(Ended::Found(finding)) => finding.trouble().into_iter().collect(),
-            Some(Ended::Trouble(_)) | None if found.is_none() => vec![BatchTrouble::NotIdentified],
+            Some(Ended::Trouble(_)) | None if found.is_none() => {
+                vec![BatchTrouble::Heat(HeatTrouble::NotIdentified)]
+            }
             Some(Ended::Trouble(_)) | None => Vec::new(),
         };
         BatchOutcome {

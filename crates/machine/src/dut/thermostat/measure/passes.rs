@@ -7,6 +7,7 @@ use super::contacts::Events;
 use super::repeat::{self, Shown};
 use super::trial::Trial;
 use super::windows::{planned, shown};
+use crate::dut::batch::HeatTrouble;
 use crate::dut::experiment::Experiment;
 use chamber::control::increment::{Increment, Rules};
 use chamber::control::pid::Pid;
@@ -98,7 +99,9 @@ impl Work {
         seen: &Seen,
         (record, parts): (&Record, &dyn Fn() -> Vec<Shown>),
     ) -> Result<Option<Command>, Finding> {
-        let control_c = seen.control_c.ok_or(Finding::SensorBroken)?;
+        let control_c = seen
+            .control_c
+            .ok_or(Finding::Heat(HeatTrouble::ThermometerBroken))?;
         match self {
             Self::Identification(run) => match run.step(control_c) {
                 Ok(Step::Go(command)) => Ok(Some(command)),
@@ -118,7 +121,7 @@ impl Work {
                     };
                     Ok(Some(Command::OFF))
                 }
-                Err(_) => Err(Finding::NotIdentified),
+                Err(_) => Err(Finding::Heat(HeatTrouble::NotIdentified)),
             },
             Self::Room(search) => match search.step(control_c) {
                 room::Step::Go(command) => Ok(Some(command)),
@@ -312,7 +315,7 @@ impl Passes {
     }
 
     /// Checks the slope over the last minute within the windows against the limit of the recipe; fails with
-    /// [`Finding::RampTooFast`].
+    /// [`HeatTrouble::RampTooFast`].
     fn check_slope(
         &mut self,
         device: &Device,
@@ -330,7 +333,7 @@ impl Passes {
                 .zip(most)
                 .is_some_and(|(slope, most)| slope.abs() > most);
         match exceeds {
-            true => Err(Finding::RampTooFast),
+            true => Err(Finding::Heat(HeatTrouble::RampTooFast)),
             false => Ok(()),
         }
     }

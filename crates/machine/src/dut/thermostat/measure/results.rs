@@ -6,7 +6,7 @@ use super::creep::{self, Pulse};
 use super::drop::Found;
 use super::passes::Work;
 use super::windows::shown;
-use crate::dut::batch::{BatchOrder, BatchTrouble, SocketResult};
+use crate::dut::batch::{BatchOrder, BatchTrouble, HeatTrouble, SocketResult};
 use crate::dut::record::Own;
 use crate::dut::thermostat::certificate::Certificate;
 use crate::dut::thermostat::device::{Device, Lesson, SENSOR_LAG_S};
@@ -101,7 +101,11 @@ pub fn batch(
     work: Option<&Work>,
 ) -> Vec<SocketResult> {
     let Some(chamber) = work.and_then(Work::chamber) else {
-        return void(device, order, Some(Ended::Found(Finding::NotIdentified)));
+        return void(
+            device,
+            order,
+            Some(Ended::Found(Finding::Heat(HeatTrouble::NotIdentified))),
+        );
     };
     let (lag, is_known, scatter_k) = lot(device, recorded.record, &recorded.events);
     let expected = device.thermostat.windows(&device.recipe.limits);

@@ -8,6 +8,7 @@ use super::creep::{EACH_SECOND, Pulse};
 use super::drop;
 use super::passes::{Seen, Work};
 use super::repeat::Shown;
+use crate::dut::batch::HeatTrouble;
 use crate::dut::batch_shown::{AirCurve, BatchShown};
 use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
@@ -208,7 +209,9 @@ impl Seconds {
         let points = &device.points;
         let reference = usable(image, points.reference);
         let control_c = usable(image, points.control).map(|it| it.value);
-        let reading = reference.clone().ok_or(Finding::SensorBroken)?;
+        let reading = reference
+            .clone()
+            .ok_or(Finding::Heat(HeatTrouble::ThermometerBroken))?;
         if self.work.is_none() {
             self.start(device, reading.value);
         }
@@ -290,7 +293,7 @@ impl Seconds {
             .control_c
             .is_some_and(|it| self.unpowered.step(it, self.command));
         match heats {
-            true => Err(Finding::HeatWithoutCommand),
+            true => Err(Finding::Heat(HeatTrouble::HeatWithoutCommand)),
             false => Ok(()),
         }
     }
@@ -319,10 +322,10 @@ fn broken_link([limiter, airflow, mains]: [Option<bool>; 3], seconds: usize) -> 
     let unread = [limiter, airflow, mains].contains(&None) && seconds > READ_S;
     let still = is_open(airflow) && seconds > CHAIN_S;
     match (is_open(limiter), is_open(mains), still, unread) {
-        (true, _, _, _) => Some(Finding::LimiterTripped),
-        (false, true, _, _) => Some(Finding::MainsLost),
-        (false, false, true, _) => Some(Finding::AirflowLost),
-        (false, false, false, true) => Some(Finding::ChainNotRead),
+        (true, _, _, _) => Some(Finding::Heat(HeatTrouble::LimiterTripped)),
+        (false, true, _, _) => Some(Finding::Heat(HeatTrouble::MainsLost)),
+        (false, false, true, _) => Some(Finding::Heat(HeatTrouble::AirflowLost)),
+        (false, false, false, true) => Some(Finding::Heat(HeatTrouble::ChainNotRead)),
         (false, false, false, false) => None,
     }
 }
@@ -379,7 +382,10 @@ mod tests {
         for place in 0..3 {
             let mut read = [on; 3];
             read[place] = None;
-            assert_eq!(broken_link(read, 100), Some(Finding::ChainNotRead));
+            assert_eq!(
+                broken_link(read, 100),
+                Some(Finding::Heat(HeatTrouble::ChainNotRead))
+            );
             assert_eq!(broken_link(read, 1), None);
         }
     }
@@ -387,6 +393,9 @@ mod tests {
     #[test]
     fn an_open_link_says_more_than_an_unread_one() {
         let read = [None, Some(true), Some(false)];
-        assert_eq!(broken_link(read, 100), Some(Finding::MainsLost));
+        assert_eq!(
+            broken_link(read, 100),
+            Some(Finding::Heat(HeatTrouble::MainsLost))
+        );
     }
 }
