@@ -39,17 +39,6 @@ impl Strategy {
         }
     }
 
-    /// Runs three passes at 1 °F/min less 10 %, as referee tests want them.
-    pub fn referee() -> Self {
-        let slow = vec![0.5; 3];
-        Self {
-            learning: slow.clone(),
-            known: slow,
-            every: 1,
-            repeat: 0.5,
-        }
-    }
-
     /// Returns true for a batch, from 0, that measures the lag.
     pub fn learns(&self, batch: usize, lag_is_known: bool) -> bool {
         !lag_is_known || batch.is_multiple_of(self.every.max(1))

@@ -10,7 +10,7 @@ pub fn begin_us(date: &str) -> Option<i64> {
     let mut parts = date.split('-');
     let [year, month, day] = [4, 2, 2].map(|digits| number(parts.next(), digits));
     let (year, month, day) = (year?, month?, day?);
-    let fits = (1..=12).contains(&month) && (1..=days_in(year, month)).contains(&day);
+    let fits = (1..=days_in(year, month)).contains(&day);
     (fits && parts.next().is_none()).then(|| days_since_1970(year, month, day) * DAY_US)
 }
 
@@ -19,13 +19,25 @@ fn number(text: Option<&str>, digits: usize) -> Option<i64> {
     text.filter(fits)?.parse().ok()
 }
 
+/// Returns the number of days of a month; 0 for a month that no year has.
 fn days_in(year: i64, month: i64) -> i64 {
     let is_leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
-    match month {
-        2 => 28 + i64::from(is_leap),
-        4 | 6 | 9 | 11 => 30,
-        _ => 31,
-    }
+    let days = [
+        31,
+        28 + i64::from(is_leap),
+        31,
+        30,
+        31,
+        30,
+        31,
+        31,
+        30,
+        31,
+        30,
+        31,
+    ];
+    let place = usize::try_from(month - 1).ok();
+    place.and_then(|it| days.get(it).copied()).unwrap_or(0)
 }
 
 /// Counts years from March, so that a leap day ends its year.
