@@ -135,6 +135,10 @@ alarm-mains_lost = The mains of the heater have failed.
     .cause = A fuse, the main switch or the supply is off.
     .consequence = The heater is off and the parts of the batch are not judged; they leave by the list for retest. The rack cools behind the locked door.
     .action = Check switch, fuses and supply, then clear or continue.
+alarm-chain_not_read = Limiter, airflow switch or mains relay could not be read.
+    .cause = The module of one of these inputs does not answer.
+    .consequence = The heater is off and the parts of the batch are not judged; they leave by the list for retest. The rack cools behind the locked door.
+    .action = Check module and wiring of limiter_ok, airflow_ok and mains_ok, then clear or continue.
 alarm-sockets_open = The contacts of sockets { $sockets } were open before heating: no part, a part that is stuck open, or a broken wire.
     .cause = Nothing shows a part in these sockets, or its contact does not close.
     .consequence = The batch goes on; a part in such a socket fails.
@@ -497,6 +501,7 @@ reason-chamber_not_identified = identification of the chamber failed
 reason-chamber_limiter_tripped = heater cut by its limiter
 reason-chamber_airflow_lost = no airflow over the heater
 reason-chamber_mains_lost = mains of the heater failed
+reason-chamber_chain_not_read = limiter, airflow or mains not read
 
 ## What interrupted a test or the way of a part: orders of the station, and alarms by their codes
 
@@ -535,6 +540,7 @@ interruption-heating_not_identified = chamber not identified
 interruption-limiter_tripped = limiter tripped
 interruption-airflow_lost = airflow lost
 interruption-mains_lost = mains lost
+interruption-chain_not_read = limiter, airflow or mains not read
 interruption-calibration_failed = calibration failed
 interruption-calibration_overdue = calibration overdue
 interruption-part_not_in_nest = no part in the nest
@@ -734,6 +740,7 @@ detail-impossible_motion = { $said }
 detail-input = { $input }
 detail-calibration_out = { $said }
 detail-calibration_not_verified = { $said }
+detail-calibration_differs = { $said }
 
 ## Members of a history query
 

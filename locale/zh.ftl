@@ -135,6 +135,10 @@ alarm-mains_lost = 加热器的电源中断。
     .cause = 熔断器、总开关或供电断开。
     .consequence = 加热已断开，本批工件不作判定，按复测清单取出；料架在锁定的门后冷却。
     .action = 检查开关、熔断器和供电，然后清除或继续。
+alarm-chain_not_read = 限温器、气流开关或电源继电器无法读取。
+    .cause = 其中一个输入所在的模块没有应答。
+    .consequence = 加热已断开，本批工件不作判定，按复测清单取出；料架在锁定的门后冷却。
+    .action = 检查 limiter_ok、airflow_ok 和 mains_ok 的模块和接线，然后清除或继续。
 alarm-sockets_open = 插座 { $sockets } 的触点在加热前断开：没有工件、工件常开卡死，或接线断开。
     .cause = 这些插座没有显示工件，或其触点不闭合。
     .consequence = 本批继续；这些插座中的工件判为不合格。
@@ -468,6 +472,7 @@ reason-chamber_not_identified = 试验箱辨识失败
 reason-chamber_limiter_tripped = 限温器切断加热
 reason-chamber_airflow_lost = 加热器无气流
 reason-chamber_mains_lost = 加热器电源中断
+reason-chamber_chain_not_read = 限温器、气流或电源未读取
 
 ## What interrupted a test or the way of a part: orders of the station, and alarms by their codes
 
@@ -506,6 +511,7 @@ interruption-heating_not_identified = 未能辨识
 interruption-limiter_tripped = 限温器动作
 interruption-airflow_lost = 气流中断
 interruption-mains_lost = 电源中断
+interruption-chain_not_read = 限温器、气流或电源未读取
 interruption-calibration_failed = 校准失败
 interruption-calibration_overdue = 校准已过期
 interruption-part_not_in_nest = 测试位无工件
@@ -705,6 +711,7 @@ detail-impossible_motion = 动作超出行程或工件尺寸
 detail-input = 安全输入“{ $input }”
 detail-calibration_out = 校准已于 { $at } 过期，请先运行 `relayrig calibrate`
 detail-calibration_not_verified = { $at } 的校准最近一次核验未通过，请先运行 `relayrig calibrate`
+detail-calibration_differs = 证书文件与 { $at } 存入的证书不同，请先运行 `relayrig calibrate`
 
 ## Members of a question to the history
 

@@ -267,7 +267,7 @@ fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), A
 /// # Errors
 /// Fails when the history cannot be read.
 pub fn calibration_refusal(
-    db: &Path,
+    (db, plant): (&Path, &Plant),
     recipe: &Recipe,
     source: &RigSource,
 ) -> anyhow::Result<Option<Message>> {
@@ -275,7 +275,10 @@ pub fn calibration_refusal(
         return Ok(None);
     }
     match recipe.device.calibrated_for() {
-        Some(nominal_v) => calibration::refusal(db, nominal_v),
+        Some(nominal_v) => {
+            let of_plant = calibration::of_plant(plant, &recipe.device, false);
+            calibration::refusal(db, nominal_v, of_plant.as_ref())
+        }
         None => Ok(None),
     }
 }

@@ -128,7 +128,7 @@ pub fn run_answered(
         admission::check_unattended(&plant, &recipe, answers)?;
     }
     if purpose == Purpose::Lot
-        && let Some(why) = admission::calibration_refusal(&files.db, &recipe, source)?
+        && let Some(why) = admission::calibration_refusal((&files.db, &plant), &recipe, source)?
     {
         let cause = admission::refuse(&files.db, &recipe, order, &why)?;
         tracing::error!(code = cause.code, "{}", cause.text);

@@ -13,7 +13,7 @@ const RAW_CHAIN_K: f64 = 0.22;
 const RAW_MAP_K: f64 = 0.30;
 /// Least expanded uncertainty without both calibrations, K.
 const LEAST_RAW_U_K: f64 = 0.8;
-/// Excess over ambient at which the map is made, K; the offsets of sockets grow with it.
+/// Excess over ambient for which the uncertainty of the map is stated, K; the offsets of sockets grow with it.
 const MAP_EXCESS_K: f64 = 75.0;
 /// Coverage factor.
 const COVERAGE: f64 = 2.0;
@@ -23,8 +23,13 @@ const COVERAGE: f64 = 2.0;
 pub struct Calibrations {
     /// Chain of sensor and module.
     pub chain_k: Option<f64>,
-    /// Map of the sockets.
+    /// Map of the sockets, at 75 K over ambient.
     pub map_k: Option<f64>,
+}
+
+/// Returns the uncertainty of a map at 75 K over ambient from that at the excess at which it was made, both K.
+pub fn map_k(u_k: f64, excess_k: f64) -> f64 {
+    u_k * MAP_EXCESS_K / excess_k
 }
 
 /// Terms of one value, standard uncertainties in K.

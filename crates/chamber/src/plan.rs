@@ -1,5 +1,5 @@
-//! Chooses the passes of a batch: rates by the number of the batch, windows by the temperatures seen, a slow repeat
-//! near limits.
+//! Chooses the passes of a batch: rates by the number of the batch, begin of the slow rate by the temperatures seen, a slow
+//! repeat near limits.
 
 use crate::program::{Pass, Window};
 use crate::statistics::median;
@@ -39,15 +39,9 @@ impl Strategy {
         }
     }
 
-    /// Runs three passes at 1 °F/min less 10 %, as referee tests want them.
-    pub fn referee() -> Self {
-        let slow = vec![0.5; 3];
-        Self {
-            learning: slow.clone(),
-            known: slow,
-            every: 1,
-            repeat: 0.5,
-        }
+    /// Returns true for a batch, from 0, that measures the lag.
+    pub fn learns(&self, batch: usize, lag_is_known: bool) -> bool {
+        !lag_is_known || batch.is_multiple_of(self.every.max(1))
     }
 
     /// Returns the passes of a batch, from 0; `lag_is_known` tells whether the lot has a lag.
@@ -58,8 +52,10 @@ impl Strategy {
         operate: Window,
         reset: Window,
     ) -> Vec<Pass> {
-        let learns = !lag_is_known || batch.is_multiple_of(self.every.max(1));
-        let rates = if learns { &self.learning } else { &self.known };
+        let rates = match self.learns(batch, lag_is_known) {
+            true => &self.learning,
+            false => &self.known,
+        };
         let pass = |rate: &f64| Pass {
             rate_k_per_min: *rate,
             operate,

@@ -18,6 +18,7 @@ use config::{Folder, Plant, load_recipe};
 use history::{CalibrationRecord, Store, snapshot_hash};
 use machine::dut::Calibration;
 use machine::dut::device::Made;
+use machine::dut::recipe::DeviceRecipe;
 use std::path::Path;
 use std::sync::OnceLock;
 use texts::Message;
@@ -107,12 +108,7 @@ fn certified(
 ) -> anyhow::Result<Option<(Calibration, String)>> {
     let plant = Plant::load(config)?;
     let device = load_recipe(config, recipe)?.device;
-    let made = Made {
-        at_us: jiff::Timestamp::now().as_microsecond(),
-        valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
-        simulated: source.is_simulated(),
-    };
-    let found = device.certified(&plant.rig(), made);
+    let found = of_plant(&plant, &device, source.is_simulated());
     let path = |file: &String| config.path(file).display().to_string();
     let file = plant.calibration.certificate_file.as_ref().map(path);
     if found.is_none() && device.part().nominal_v.is_none() && device.calibrated_for().is_some() {
@@ -124,8 +120,23 @@ fn certified(
     Ok(found.zip(file))
 }
 
-/// Stores a certified calibration, or compares the stored one with it. A certificate whose calibration has run out must
-/// be replaced first.
+/// Returns the calibration that the certificates of the plant give for parts of a recipe; `None` for a kind that is
+/// calibrated on parts, or without a certificate.
+pub(super) fn of_plant(
+    plant: &Plant,
+    device: &DeviceRecipe,
+    simulated: bool,
+) -> Option<Calibration> {
+    let made = Made {
+        at_us: jiff::Timestamp::now().as_microsecond(),
+        valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
+        simulated,
+    };
+    device.certified(&plant.rig(), made)
+}
+
+/// Stores a certified calibration, or compares the stored one with it. A certificate that has run out must be replaced
+/// first.
 fn keep_certified(
     files: &Files,
     found: Calibration,
@@ -145,15 +156,15 @@ fn keep_certified(
             due_at_us,
         });
     }
-    let latest = store.latest_calibration_of(facts.is_simulated, facts.nominal_v)?;
-    let overdue = latest.filter(|it| it.is_overdue(facts.made_at_us));
-    let same = |it: &CalibrationRecord| {
-        let known: Option<Calibration> = serde_json::from_str(&it.body).ok();
-        known.is_some_and(|it| it.facts().factors == facts.factors)
-    };
-    if let Some(old) = overdue.filter(same) {
-        let made = date(old.made_at_us)?;
-        bail!("{file}: found the certificate of {made}, which has run out, expected a newer one");
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    let (issued, due) = (date(facts.made_at_us)?, date(facts.due_at_us)?);
+    if facts.due_at_us <= now_us {
+        bail!(
+            "{file}: issued: found {issued}, from which the certificate held until {due}, expected a newer certificate"
+        );
+    }
+    if facts.made_at_us > now_us {
+        bail!("{file}: issued: found {issued}, expected a date that has come");
     }
     keep(&files.db, found)
 }
@@ -221,20 +232,41 @@ pub fn date(us: i64) -> anyhow::Result<String> {
 }
 
 /// Returns why the stored calibration permits no lot; `None` when the calibration is valid, or when there is none (the
-/// run then calibrates first).
-pub(super) fn refusal(db: &Path, nominal_v: f64) -> anyhow::Result<Option<Message>> {
+/// run then calibrates first, or takes over the certificate of the plant).
+pub(super) fn refusal(
+    db: &Path,
+    nominal_v: f64,
+    of_plant: Option<&Calibration>,
+) -> anyhow::Result<Option<Message>> {
+    let now_us = jiff::Timestamp::now().as_microsecond();
     let Some(record) = open(db)?.latest_calibration_of(false, nominal_v)? else {
-        return Ok(None);
+        let due_us = of_plant.map(|it| it.facts().due_at_us);
+        return due_us.filter(|it| *it <= now_us).map(ran_out).transpose();
     };
-    if record.is_overdue(jiff::Timestamp::now().as_microsecond()) {
-        let due = date(record.due_at_us)?;
-        let said = format!("the calibration ran out at {due}: {REMEDY}");
-        return Ok(Some(
-            Message::detail("calibration_out", said).with("at", due),
-        ));
+    if record.is_overdue(now_us) {
+        return ran_out(record.due_at_us).map(Some);
     }
     let made = date(record.made_at_us)?;
-    let said = format!("the calibration made at {made} failed its last verification: {REMEDY}");
-    let failed = || Message::detail("calibration_not_verified", said).with("at", made);
-    Ok((!record.verified).then(failed))
+    let stored: Option<Calibration> = serde_json::from_str(&record.body).ok();
+    let differs = of_plant
+        .zip(stored.as_ref())
+        .is_some_and(|(it, stored)| !stored.has_certificate_of(it));
+    let (code, said) = match (record.verified, differs) {
+        (false, _) => (
+            "calibration_not_verified",
+            format!("the calibration made at {made} failed its last verification: {REMEDY}"),
+        ),
+        (true, true) => (
+            "calibration_differs",
+            format!("the certificate differs from the stored one of {made}: {REMEDY}"),
+        ),
+        (true, false) => return Ok(None),
+    };
+    Ok(Some(Message::detail(code, said).with("at", made)))
+}
+
+fn ran_out(due_at_us: i64) -> anyhow::Result<Message> {
+    let due = date(due_at_us)?;
+    let said = format!("the calibration ran out at {due}: {REMEDY}");
+    Ok(Message::detail("calibration_out", said).with("at", due))
 }

@@ -122,8 +122,8 @@ fn uses(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
     })
 }
 
-/// Returns the calibration that the certificates of the plant give, as made now; `None` for a kind that is calibrated on
-/// parts. A stored one that has run out refuses the lot before.
+/// Returns the calibration that the certificates of the plant give; `None` for a kind that is calibrated on parts, and
+/// for a certificate that has run out, which refuses the lot before.
 fn certified(context: &LotContext) -> Option<Calibration> {
     let made = Made {
         at_us: context.epoch_us,
@@ -131,7 +131,8 @@ fn certified(context: &LotContext) -> Option<Calibration> {
         simulated: context.is_simulated(),
     };
     let device = &context.recipe.device;
-    device.certified(&context.plant.rig(), made)
+    let found = device.certified(&context.plant.rig(), made);
+    found.filter(|it| it.facts().due_at_us > context.epoch_us)
 }
 
 /// Returns the stored calibration; `None` when it is overdue.

@@ -155,7 +155,7 @@ impl OrderRouter {
             } = &*router.0;
             let recipe = admission::admit(db, plant, &order, Purpose::Lot)
                 .map_err(|why| why.screen_message())?;
-            match admission::calibration_refusal(db, &recipe, source) {
+            match admission::calibration_refusal((db, plant), &recipe, source) {
                 Ok(None) => Ok(AfterRun::Lot(Box::new((order, recipe)))),
                 Ok(Some(why)) => Err(refused("calibration_invalid").with_inner("detail", &why)),
                 Err(error) => Err(trouble(&error)),

@@ -34,15 +34,6 @@ impl Rules {
         change_k_per_s: 1.0 / 30.0,
         power_per_s: 0.002,
     };
-
-    /// Returns the same rules for a chamber that needs `factor` times the power for the same error.
-    #[must_use]
-    pub fn scaled(self, factor: f64) -> Self {
-        Self {
-            power_per_s: self.power_per_s * factor,
-            ..self
-        }
-    }
 }
 
 /// State of an incremental fuzzy controller, stepped once a second.

@@ -4,6 +4,7 @@
 //! losses that stay. With the vent open and the fan on the chamber falls to some kelvin above the room; what is left of the
 //! heat of the walls shows as the slope.
 
+use super::Identified;
 use crate::statistics::slope;
 
 /// Rise during a rest with the fan only that a cold chamber does not exceed, K: the fan lifts the air by 1 K at once, and all
@@ -41,6 +42,16 @@ pub struct Cooled {
     pub end_c: f64,
     /// Slope, K/s.
     pub slope_k_per_s: f64,
+}
+
+impl Cooled {
+    /// Returns the temperature around the chamber, C: the one that balances fan, losses and vent; `None` for a chamber that
+    /// loses no heat.
+    pub fn ambient_c(&self, chamber: &Identified) -> Option<f64> {
+        let heated = chamber.fan - self.slope_k_per_s / chamber.slope_k_per_s;
+        let removed_per_k = chamber.loss_per_k + chamber.vent_per_k;
+        (removed_per_k > 0.0).then(|| self.end_c - heated / removed_per_k)
+    }
 }
 
 impl Cooling {

@@ -63,6 +63,16 @@ pub enum IdentifyError {
         /// Limit, C.
         limit_c: f64,
     },
+    /// The response has a part without rise, by which the feed-forward would divide.
+    #[error(
+        "found a gain of {gain_k:.1} K and a slope of {slope_k_per_s:.4} K/s, expected both above 0"
+    )]
+    NotAbove {
+        /// Rise that settles, K per full heater.
+        gain_k: f64,
+        /// Rise that goes on, K/s per full heater.
+        slope_k_per_s: f64,
+    },
     /// A reading is not a number.
     #[error("found no reading of the control sensor in second {second}")]
     NoReading {
@@ -168,17 +178,8 @@ impl Identification {
     /// Finds the temperature around a chamber that was cooled: the one that balances fan, losses and vent at the end of the
     /// cooling.
     fn find_ambient(&mut self, found: &Identified) {
-        let Some(Cooled {
-            end_c,
-            slope_k_per_s,
-        }) = self.cooled
-        else {
-            return;
-        };
-        let heated = found.fan - slope_k_per_s / found.slope_k_per_s;
-        let removed_per_k = found.loss_per_k + found.vent_per_k;
-        if removed_per_k > 0.0 {
-            self.ambient_c = end_c - heated / removed_per_k;
+        if let Some(ambient_c) = self.cooled.and_then(|it| it.ambient_c(found)) {
+            self.ambient_c = ambient_c;
         }
     }
 
@@ -215,6 +216,14 @@ impl Identification {
             });
         }
         let found = self.with_losses(&response, drift, start_c);
+        let settles_only = IdentifyError::NotAbove {
+            gain_k: found.gain_k,
+            slope_k_per_s: found.slope_k_per_s,
+        };
+        let above = |it: f64| it.is_finite() && it > 0.0;
+        if !above(found.gain_k) || !above(found.slope_k_per_s) {
+            return Err(settles_only);
+        }
         let end = rest + heat + LENGTHS_S[2];
         let cooling = slope(&self.readings_c[end - DRIFT_S..=end]);
         Ok(Identified {
@@ -261,5 +270,37 @@ impl Identification {
             modelled += model.step(found_c - self.ambient_c);
         }
         (over / under).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Identifies a chamber that settles within a minute at a step of the heater and then moves by a slope, K/s.
+    fn identified(slope_k_per_s: f64) -> Result<Identified, IdentifyError> {
+        let mut run = Identification::new(0.15, 25.0, 90.0);
+        let (mut heated_s, mut settled_k) = (0.0, 0.0);
+        loop {
+            match run.step(25.0 + settled_k + slope_k_per_s * heated_s)? {
+                Step::Done(found) => return Ok(found),
+                Step::Go(command) => {
+                    let heats = command.heater > 0.0;
+                    heated_s += f64::from(u8::from(heats));
+                    settled_k += (if heats { 8.0 } else { 0.0 } - settled_k) / 20.0;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_response_that_sinks_under_power_gives_no_figures() {
+        assert!(identified(0.01).is_ok());
+        let found = identified(-0.01);
+        let is_refused = |slope_k_per_s| slope_k_per_s < 0.0;
+        assert!(
+            matches!(found, Err(IdentifyError::NotAbove { slope_k_per_s, .. }) if is_refused(slope_k_per_s)),
+            "{found:?}"
+        );
     }
 }

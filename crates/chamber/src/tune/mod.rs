@@ -6,6 +6,7 @@ pub mod fit;
 pub mod identify;
 pub mod relay;
 pub mod response;
+pub mod room;
 
 /// Model of a chamber with one lag and a delay: its response to power in the first two minutes.
 #[derive(Debug, Clone, Copy, PartialEq)]

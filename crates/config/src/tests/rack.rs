@@ -65,6 +65,21 @@ fn points_of_a_feeder_have_no_terminal_here() {
 }
 
 #[test]
+fn the_scan_reads_the_safety_chain_on_any_module() {
+    let text = changed(
+        RACK_RIG,
+        "limiter_ok        = { module = \"socket_di_c\", channel = 11,",
+        "limiter_ok        = { module = \"socket_di_c\", channel = 14,",
+    );
+    let settings = toml::from_str(&text).unwrap();
+    let wiring = Wiring::resolve(&settings, FIXTURES).unwrap();
+    for name in ["limiter_ok", "airflow_ok", "mains_ok"] {
+        let input = wiring.digital_input(name).unwrap();
+        assert!(wiring.scanned_inputs().contains(&input), "{name}");
+    }
+}
+
+#[test]
 fn four_analog_outputs_have_channels_of_their_own() {
     let wiring = plant().wiring;
     let outputs = ["heater_power", "vent_opening"].map(|it| wiring.analog_output(it).unwrap());

@@ -33,37 +33,47 @@ pub struct SocketResult {
     pub record: TestRecord,
 }
 
+named! {
+    /// Trouble of the heat of a batch: the heat goes off, and no part is judged.
+    HeatTrouble {
+        /// A thermometer of the air has no usable reading.
+        ThermometerBroken = "thermometer_broken",
+        /// A thermometer moves faster than the air can.
+        ThermometerJump = "thermometer_jump",
+        /// Both thermometers of the air disagree.
+        ThermometersDiffer = "thermometers_differ",
+        /// A thermometer stands still under power.
+        ThermometerStuck = "thermometer_stuck",
+        /// The air does not warm or cool as its power demands.
+        EnergyBalance = "energy_balance",
+        /// The air warms without power.
+        HeatWithoutCommand = "heat_without_command",
+        /// The air is far above its set point.
+        OverSetPoint = "over_set_point",
+        /// The air does not follow a rising set point.
+        RampNotReached = "ramp_not_reached",
+        /// The air does not follow a falling set point.
+        CoolingTooSlow = "cooling_too_slow",
+        /// The air warms or cools faster than the recipe allows.
+        RampTooFast = "ramp_too_fast",
+        /// The answer of the air to its power has no usable figures.
+        NotIdentified = "heating_not_identified",
+        /// The limiter on the heater has tripped.
+        LimiterTripped = "limiter_tripped",
+        /// The airflow switch is open.
+        AirflowLost = "airflow_lost",
+        /// The mains of the heater have failed.
+        MainsLost = "mains_lost",
+        /// Limiter, airflow switch or mains relay has no fresh reading.
+        ChainNotRead = "chain_not_read",
+    }
+}
+
 /// What the test of a batch has met that concerns the rig and not a part; the station raises an alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum BatchTrouble {
-    /// A thermometer of the air has no usable reading.
-    ThermometerBroken,
-    /// A thermometer moves faster than the air can.
-    ThermometerJump,
-    /// Both thermometers of the air disagree.
-    ThermometersDiffer,
-    /// A thermometer stands still under power.
-    ThermometerStuck,
-    /// The air does not warm or cool as its power demands.
-    EnergyBalance,
-    /// The air warms without power.
-    HeatWithoutCommand,
-    /// The air is far above its set point.
-    OverSetPoint,
-    /// The air does not follow a rising set point.
-    RampNotReached,
-    /// The air warms or cools faster than the recipe allows.
-    RampTooFast,
-    /// The air does not follow a falling set point.
-    CoolingTooSlow,
-    /// The answer of the air to its power has no usable figures.
-    NotIdentified,
-    /// The limiter on the heater has tripped.
-    LimiterTripped,
-    /// The airflow switch is open.
-    AirflowLost,
-    /// The mains of the heater have failed.
-    MainsLost,
+    /// Trouble of the heat.
+    Heat(HeatTrouble),
     /// Sockets whose contact was open before heating, in words; the test goes on.
     SocketsOpen(String),
     /// Lag of the lot, s, and the one that earlier batches or the recipe state; the test goes on.

@@ -22,6 +22,15 @@ impl Calibration {
             Self::Thermostat(of_rack) => of_rack.facts(),
         }
     }
+
+    /// Returns true when both follow from the same certificate; false for factors that parts have shown.
+    pub fn has_certificate_of(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Thermostat(it), Self::Thermostat(other)) => it.certificate == other.certificate,
+            (Self::EmRelay(_), Self::EmRelay(_) | Self::Thermostat(_))
+            | (Self::Thermostat(_), Self::EmRelay(_)) => false,
+        }
+    }
 }
 
 /// Data that every kind of calibration has.

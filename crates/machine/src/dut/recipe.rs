@@ -134,6 +134,12 @@ pub trait KindRecipe {
     /// keys that ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault>;
 
+    /// Returns the fault of a test that takes too long with this number of slow repeats; `None` for a kind whose parts take
+    /// seconds.
+    fn too_long(&self, _limits: &Limits, _slow_repeats: u32) -> Option<Fault> {
+        None
+    }
+
     /// Returns the demand of the test on the supply; none for a test that uses no supply.
     fn demand(&self, _limits: &Limits, _accuracy: &AccuracySettings) -> Option<SupplyDemand> {
         None
@@ -244,7 +250,10 @@ impl Recipe {
 
     /// Returns every reason why a rig cannot perform the recipe, each with its key; empty for a feasible recipe.
     pub fn infeasible(&self, rig: &Rig) -> Vec<Fault> {
-        self.device.infeasible(&self.limits, rig)
+        let mut faults = self.device.infeasible(&self.limits, rig);
+        let repeats = self.decision.slow_repeats;
+        faults.extend(self.device.too_long(&self.limits, repeats));
+        faults
     }
 
     /// Returns the wiring in the smallest supply range that serves the recipe. The recipe must not be

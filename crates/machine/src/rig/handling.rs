@@ -78,11 +78,15 @@ impl Wiring {
         self.bins().contains(&bin)
     }
 
-    /// Returns the inputs that the scan reads besides those of the machine: beams of bins, or contacts of sockets.
+    /// Returns the inputs that the scan reads besides those of the machine: beams of bins; or contacts of sockets and the
+    /// inputs of fixtures, because the test of a batch watches its safety chain all the time.
     pub fn scanned_inputs(&self) -> Vec<DigitalInput> {
         match &self.handling {
             Handling::Feeder(table) => table.axis.bins().map(|bin| table.axis.beam(bin)).collect(),
-            Handling::Rack(rack) => rack.sockets().iter().map(|it| it.contact).collect(),
+            Handling::Rack(rack) => {
+                let contacts = rack.sockets().iter().map(|it| it.contact);
+                contacts.chain(self.fixture_inputs()).collect()
+            }
         }
     }
 }

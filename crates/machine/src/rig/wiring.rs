@@ -308,6 +308,13 @@ impl Wiring {
             .map(|at| (self.digital_in[at].0.as_str(), DigitalInput::at(at)))
     }
 
+    /// Yields every wired digital input of the fixtures.
+    pub(super) fn fixture_inputs(&self) -> impl Iterator<Item = DigitalInput> {
+        (DigitalIn::COUNT..self.before_beams)
+            .filter(|at| self.digital_in[*at].1.is_some())
+            .map(DigitalInput::at)
+    }
+
     /// Yields every wired digital output with its name, in the order in which pages show them: fixtures, machine.
     pub fn digital_outputs(&self) -> impl Iterator<Item = (&'static str, DigitalOutput)> {
         let machine = DigitalOut::COUNT;

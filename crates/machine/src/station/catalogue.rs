@@ -172,6 +172,8 @@ codes! {
     AirflowLost = "airflow_lost", Hold, Operator;
     /// The mains of the heater have failed.
     MainsLost = "mains_lost", Hold, Operator;
+    /// Limiter, airflow switch or mains relay has no fresh reading.
+    ChainNotRead = "chain_not_read", Hold, Operator;
     /// The contacts of sockets were open before heating.
     SocketsOpen = "sockets_open", Nothing, Itself;
     /// The lag of a lot is far from the one that earlier batches or the recipe state.

@@ -4,7 +4,7 @@ mod parts;
 
 use super::catalogue::AlarmCode;
 use crate::dut::Reason;
-use crate::dut::batch::BatchTrouble;
+use crate::dut::batch::{BatchTrouble, HeatTrouble};
 use crate::dut::promise::Broken;
 use crate::handling::Move;
 use crate::handling::trouble::Trouble;
@@ -66,20 +66,7 @@ impl From<Trouble> for Alarm {
 impl From<BatchTrouble> for Alarm {
     fn from(met: BatchTrouble) -> Self {
         match met {
-            BatchTrouble::ThermometerBroken => AlarmCode::ThermometerBroken.into(),
-            BatchTrouble::ThermometerJump => AlarmCode::ThermometerJump.into(),
-            BatchTrouble::ThermometersDiffer => AlarmCode::ThermometersDiffer.into(),
-            BatchTrouble::ThermometerStuck => AlarmCode::ThermometerStuck.into(),
-            BatchTrouble::EnergyBalance => AlarmCode::EnergyBalance.into(),
-            BatchTrouble::HeatWithoutCommand => AlarmCode::HeatWithoutCommand.into(),
-            BatchTrouble::OverSetPoint => AlarmCode::OverSetPoint.into(),
-            BatchTrouble::RampNotReached => AlarmCode::RampNotReached.into(),
-            BatchTrouble::RampTooFast => AlarmCode::RampTooFast.into(),
-            BatchTrouble::CoolingTooSlow => AlarmCode::CoolingTooSlow.into(),
-            BatchTrouble::NotIdentified => AlarmCode::HeatingNotIdentified.into(),
-            BatchTrouble::LimiterTripped => AlarmCode::LimiterTripped.into(),
-            BatchTrouble::AirflowLost => AlarmCode::AirflowLost.into(),
-            BatchTrouble::MainsLost => AlarmCode::MainsLost.into(),
+            BatchTrouble::Heat(met) => code_of(met).into(),
             BatchTrouble::SocketsOpen(sockets) => {
                 Self::from(AlarmCode::SocketsOpen).with("sockets", sockets)
             }
@@ -89,6 +76,26 @@ impl From<BatchTrouble> for Alarm {
                     .with("expected_s", expected_s)
             }
         }
+    }
+}
+
+fn code_of(trouble: HeatTrouble) -> AlarmCode {
+    match trouble {
+        HeatTrouble::ThermometerBroken => AlarmCode::ThermometerBroken,
+        HeatTrouble::ThermometerJump => AlarmCode::ThermometerJump,
+        HeatTrouble::ThermometersDiffer => AlarmCode::ThermometersDiffer,
+        HeatTrouble::ThermometerStuck => AlarmCode::ThermometerStuck,
+        HeatTrouble::EnergyBalance => AlarmCode::EnergyBalance,
+        HeatTrouble::HeatWithoutCommand => AlarmCode::HeatWithoutCommand,
+        HeatTrouble::OverSetPoint => AlarmCode::OverSetPoint,
+        HeatTrouble::RampNotReached => AlarmCode::RampNotReached,
+        HeatTrouble::RampTooFast => AlarmCode::RampTooFast,
+        HeatTrouble::CoolingTooSlow => AlarmCode::CoolingTooSlow,
+        HeatTrouble::NotIdentified => AlarmCode::HeatingNotIdentified,
+        HeatTrouble::LimiterTripped => AlarmCode::LimiterTripped,
+        HeatTrouble::AirflowLost => AlarmCode::AirflowLost,
+        HeatTrouble::MainsLost => AlarmCode::MainsLost,
+        HeatTrouble::ChainNotRead => AlarmCode::ChainNotRead,
     }
 }
 

@@ -3,13 +3,14 @@
 //! A laboratory compares the reference thermometer, read through its own module, at several temperatures, and measures
 //! each socket against the air. `relayrig calibrate` stores both; without them results carry the uncertainty of a raw rig.
 
+use super::issued;
 use super::response::StatedResponse;
 use crate::dut::calibration::CalibrationFacts;
 use crate::dut::device::Made;
 use crate::gauge::Factor;
 use crate::gauge::factor::Named;
 use crate::rig::fault::Fault;
-use chamber::budget::Calibrations;
+use chamber::budget::{Calibrations, map_k};
 use serde::{Deserialize, Serialize};
 use units::Unit;
 
@@ -50,6 +51,9 @@ pub struct SocketMap {
 /// What a laboratory states.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
+    /// Date of issue, such as `2026-01-15`; empty only in a calibration that an older version stored.
+    #[serde(default)]
+    pub issued: String,
     /// Chain of the reference thermometer.
     pub chain: Chain,
     /// Temperatures of the sockets.
@@ -64,6 +68,9 @@ pub struct Certificate {
 pub struct Calibration {
     made_at_us: i64,
     due_at_us: i64,
+    /// When the history stored it, microseconds since 1970 UTC: the same certificate may return after another one.
+    #[serde(default)]
+    stored_at_us: i64,
     simulated: bool,
     nominal_v: f64,
     /// What the laboratory states.
@@ -76,6 +83,10 @@ impl Certificate {
     /// # Errors
     /// Fails with the key, what was found and what was expected.
     pub fn check(&self, sockets: usize) -> Result<(), Fault> {
+        if issued::begin_us(&self.issued).is_none() {
+            let found = format!("\"{}\"", self.issued);
+            return Err(Fault::new("issued", found, "a date such as \"2026-01-15\""));
+        }
         let points = &self.chain.points;
         if points.len() < LEAST_POINTS {
             let expected = format!("at least {LEAST_POINTS} temperatures");
@@ -108,7 +119,7 @@ impl Certificate {
     pub fn remaining(&self) -> Calibrations {
         Calibrations {
             chain_k: Some(self.chain.u_k),
-            map_k: Some(self.map.u_k),
+            map_k: Some(map_k(self.map.u_k, self.map.excess_k)),
         }
     }
 }
@@ -131,11 +142,15 @@ impl Chain {
 }
 
 impl Calibration {
-    /// Makes the calibration of a rig from its certificate.
+    /// Makes the calibration of a rig from its certificate, which holds from its date on; on the simulated rig from now
+    /// on.
     pub fn new(certificate: Certificate, made: Made) -> Self {
+        let issued_us = issued::begin_us(&certificate.issued).filter(|_| !made.simulated);
+        let made_at_us = issued_us.unwrap_or(made.at_us);
         Self {
-            made_at_us: made.at_us,
-            due_at_us: made.at_us + made.valid_us,
+            made_at_us,
+            due_at_us: made_at_us + made.valid_us,
+            stored_at_us: made.at_us,
             simulated: made.simulated,
             nominal_v: EVERY_PART_V,
             certificate: Certificate {
@@ -180,6 +195,7 @@ mod tests {
         let point = |reading_c, true_c| ChainPoint { reading_c, true_c };
         let points = vec![point(40.1, 40.0), point(80.2, 80.0), point(120.2, 120.0)];
         Certificate {
+            issued: "2026-01-15".into(),
             chain: Chain { points, u_k: 0.05 },
             map: SocketMap {
                 excess_k: 75.0,
@@ -214,15 +230,43 @@ mod tests {
     }
 
     #[test]
+    fn uncertainty_of_a_map_holds_at_its_own_excess() {
+        for excess_k in [30.0, 75.0] {
+            let mut it = certificate();
+            it.map.excess_k = excess_k;
+            let found = it.remaining().of_temperature(excess_k, 0.0).map_k;
+            assert!((found - 0.1).abs() < 1e-9, "{excess_k}: {found}");
+        }
+    }
+
+    #[test]
     fn a_wrong_certificate_names_key_and_figure() {
         let mut it = certificate();
         let said = |it: &Certificate, sockets| it.check(sockets).err().map(|it| it.to_string());
         assert_eq!(said(&it, 2), None);
         assert!(said(&it, 40).is_some_and(|it| it.contains("40 sockets")));
+        it.issued = "15 January".into();
+        assert!(said(&it, 2).is_some_and(|it| it.contains("issued: found \"15 January\"")));
+        it.issued = "2026-01-15".into();
         it.chain.points.swap(0, 1);
         assert!(said(&it, 2).is_some_and(|it| it.contains("chain.points.1.reading_c")));
         it.chain.points.truncate(2);
         assert!(said(&it, 2).is_some_and(|it| it.contains("at least 3")));
+    }
+
+    #[test]
+    fn a_certificate_holds_from_its_date_on() {
+        let made = |simulated| Made {
+            at_us: 1_800_000_000_000_000,
+            valid_us: 10,
+            simulated,
+        };
+        let due_us = |simulated| {
+            let made = Calibration::new(certificate(), made(simulated));
+            made.facts().due_at_us
+        };
+        assert_eq!(due_us(false), 1_768_435_200_000_010);
+        assert_eq!(due_us(true), 1_800_000_000_000_010);
     }
 
     #[test]

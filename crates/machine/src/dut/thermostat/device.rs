@@ -82,13 +82,6 @@ impl Device {
         }
     }
 
-    /// Returns the response of the chamber, from an earlier batch of the run or as the plant states it; `None` before the
-    /// first batch of a run has identified it.
-    pub fn response(&self) -> Option<Identified> {
-        let of_batch = self.lesson.as_ref().map(|it| it.chamber);
-        of_batch.or_else(|| self.stated.map(|it| it.identified()))
-    }
-
     /// Returns the device with this calibration.
     pub fn calibrated(self, calibration: Option<Calibration>) -> Self {
         let due_at_us = calibration.as_ref().map(|it| it.facts().due_at_us);

@@ -66,6 +66,7 @@ const RESPONSE: &[Key] = table! {
 
 /// Keys of the certificate of the rack.
 pub const CERTIFICATE: &[Key] = table! {
+    key("issued", Form::Text, "gauge", "date of issue, such as 2026-01-15; from then on the certificate holds for calibration.valid_h");
     key("chain", Form::Table(CHAIN), "gauge", "reference thermometer, read through its module");
     key("map", Form::Table(MAP), "gauge", "sockets against the air");
     optional("chamber", Form::Table(RESPONSE), "station", "response of the chamber, of `relayrig chamber identify`; without it the first batch of a run finds it");

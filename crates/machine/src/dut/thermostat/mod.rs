@@ -9,10 +9,12 @@
 //! | what is measured, and on which list a part that fails leaves | [`parameter`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | what the rig must have for it | [`feasible`] |
+//! | how long a batch takes | [`duration`] |
 //! | which points of the rig it needs | [`points`] |
 //! | what a test finds in addition to figures | [`finding`] |
 //! | the keys of its recipe and of the certificate | [`keys`] |
 //! | calibration of thermometer chain and sockets | [`certificate`] |
+//! | date of that calibration | [`issued`] |
 //! | response of the chamber, as a file states it | [`response`] |
 //! | what outlives a batch | [`device`] |
 //! | the test of a batch | [`measure`] |
@@ -21,8 +23,10 @@
 pub mod card;
 pub mod certificate;
 pub mod device;
+pub mod duration;
 pub mod feasible;
 pub mod finding;
+pub mod issued;
 pub mod keys;
 pub mod made_up;
 pub mod measure;
@@ -44,5 +48,5 @@ pub const DEFINITION: KindDefinition = KindDefinition {
     bins: &[parameter::CONTACT, parameter::TEMPERATURE, parameter::SNAP],
     characteristics: || Parameter::ALL.map(Into::into).to_vec(),
     stages: || measure::Stage::NAMES.to_vec(),
-    findings: || Finding::ALL.map(Into::into).to_vec(),
+    findings: || Finding::all().map(Into::into).collect(),
 };

@@ -2,7 +2,7 @@
 
 use super::certificate::{self, EVERY_PART_V};
 use super::points::Points;
-use super::{Parameter, card, feasible, made_up};
+use super::{Parameter, card, duration, feasible, made_up};
 use crate::dut::card::Card;
 use crate::dut::device::{Made, Rig};
 use crate::dut::made_up::MadeUp;
@@ -148,6 +148,10 @@ impl KindRecipe for ThermostatRecipe {
 
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
         feasible::faults(self, limits, rig)
+    }
+
+    fn too_long(&self, limits: &Limits, slow_repeats: u32) -> Option<Fault> {
+        duration::too_long(self, limits, slow_repeats)
     }
 
     fn card(&self) -> Card {

@@ -1,7 +1,7 @@
 //! The test of a batch: contact resistances, identification of the chamber, passes through the windows, heat off.
 //!
 //! ```text
-//! contacts -> identification (first batch of a run) -> passes -> off
+//! contacts -> identification, or room for a stated response (first batch of a run) -> passes -> off
 //! ```
 //! Signals: the contacts in the image, which the scan reads all the time, and the two thermometers of the chamber, read
 //! once a second. The program gives the set point to the controller, which commands heater and vent.
@@ -18,10 +18,13 @@ mod repeat;
 mod results;
 mod seconds;
 mod trial;
+mod windows;
 
-use super::Finding;
 use super::device::Device;
-use crate::dut::batch::{BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble};
+use super::{Finding, duration};
+use crate::dut::batch::{
+    BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, HeatTrouble,
+};
 use crate::dut::batch_shown::{BatchShown, SocketSwitched};
 use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
@@ -51,8 +54,6 @@ named! {
     }
 }
 
-/// Longest duration of a batch.
-const LONGEST: Span = Span::ms(6 * 3_600_000);
 /// Time in which the scan reads every contact at least once.
 const SEEN: Span = Span::ms(1_000);
 
@@ -69,8 +70,8 @@ pub(super) enum Ended {
 enum State {
     /// The fan runs until the scan has read every contact.
     Cold(Runner),
-    /// Measures the resistances of the closed contacts.
-    Drops(Runner),
+    /// Measures the resistances of the closed contacts of these sockets.
+    Drops(Runner, Vec<Socket>),
     Seconds(Box<Seconds>),
     Off(Runner, Option<Ended>),
 }
@@ -82,7 +83,7 @@ pub struct Test {
     order: BatchOrder,
     sockets: Vec<Socket>,
     contacts: Vec<Contact>,
-    drops: Result<Vec<Found>, Unreadable>,
+    drops: Result<Vec<(u16, Found)>, Unreadable>,
     /// Experiment without parts; `None` for the test of parts.
     experiment: Option<Experiment>,
     /// Record and chamber of the heated part of the test, once it is over.
@@ -138,17 +139,19 @@ impl Test {
     fn advance(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Next {
         match &mut self.state {
             State::Cold(runner) => match runner.step(now, done, image) {
-                RunnerState::Done => Next::State(Box::new(State::Drops(self.drops_runner(now)))),
+                RunnerState::Done => Next::State(Box::new(self.drops(now))),
                 RunnerState::Trouble(why) => self.off(now, Some(Ended::Trouble(why))),
                 waiting => Next::Waiting(waiting),
             },
-            State::Drops(runner) => match runner.step(now, done, image) {
+            State::Drops(runner, sockets) => match runner.step(now, done, image) {
                 RunnerState::Done => {
-                    self.drops = drop::resistances(
+                    let found = drop::resistances(
                         &self.device.points,
                         &runner.readings,
                         &self.device.accuracy,
                     );
+                    let numbers = sockets.iter().map(|it| it.number);
+                    self.drops = found.map(|found| numbers.zip(found).collect());
                     let seconds = Seconds::begin(&self.device, self.experiment, now);
                     Next::State(Box::new(State::Seconds(Box::new(seconds))))
                 }
@@ -173,7 +176,9 @@ impl Test {
         }
     }
 
-    fn drops_runner(&self, now: RigTime) -> Runner {
+    /// Begins the resistances: from now on no contact counts as cold that was not read before.
+    fn drops(&mut self, now: RigTime) -> State {
+        self.contacts.iter_mut().for_each(Contact::warm);
         let closed = |(socket, contact): (&Socket, &Contact)| {
             (contact.cold() == Some(true)).then_some(*socket)
         };
@@ -183,10 +188,8 @@ impl Test {
             .zip(&self.contacts)
             .filter_map(closed)
             .collect();
-        Runner::new(
-            drop::acts(&self.device.points, &closed, &self.device.accuracy),
-            now,
-        )
+        let acts = drop::acts(&self.device.points, &closed, &self.device.accuracy);
+        State::Drops(Runner::new(acts, now), closed)
     }
 
     fn off(&self, now: RigTime, why: Option<Ended>) -> Next {
@@ -199,7 +202,7 @@ impl Test {
     fn outcome(&self) -> BatchOutcome {
         let why = match &self.state {
             State::Off(_, why) => why.clone(),
-            State::Cold(_) | State::Drops(_) | State::Seconds(_) => {
+            State::Cold(_) | State::Drops(..) | State::Seconds(_) => {
                 panic!("a test judges at its end")
             }
         };
@@ -220,14 +223,11 @@ impl Test {
             .and_then(|it| Some((it, it.last.as_ref()?)));
         let results = match (why, complete, &self.drops) {
             (None, Some((ran, last)), Ok(drops)) => {
+                let contacts = self.contacts.iter();
                 let recorded = Recorded {
                     record: &ran.record,
-                    events: self.contacts.iter().map(Contact::events).collect(),
-                    cold_open: self
-                        .contacts
-                        .iter()
-                        .map(|it| it.cold() != Some(true))
-                        .collect(),
+                    events: contacts.clone().map(|it| it.events(ran.origin)).collect(),
+                    cold_open: contacts.map(|it| it.cold() == Some(false)).collect(),
                     drops,
                     pulses: &ran.pulses,
                     ambient_c: ran.ambient_c,
@@ -254,7 +254,9 @@ impl Test {
         };
         let troubles = match why {
             Some(Ended::Found(finding)) => finding.trouble().into_iter().collect(),
-            Some(Ended::Trouble(_)) | None if found.is_none() => vec![BatchTrouble::NotIdentified],
+            Some(Ended::Trouble(_)) | None if found.is_none() => {
+                vec![BatchTrouble::Heat(HeatTrouble::NotIdentified)]
+            }
             Some(Ended::Trouble(_)) | None => Vec::new(),
         };
         BatchOutcome {
@@ -276,12 +278,8 @@ impl Test {
 
 impl BatchTest for Test {
     fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> BatchProgress {
-        let origin = match &self.state {
-            State::Seconds(seconds) => seconds.origin,
-            State::Cold(_) | State::Drops(_) | State::Off(..) => now,
-        };
         for contact in &mut self.contacts {
-            contact.poll(image, now, origin);
+            contact.poll(image, now);
         }
         let mut done = done;
         loop {
@@ -299,9 +297,10 @@ impl BatchTest for Test {
 
     fn stage(&self) -> &'static str {
         let stage = match &self.state {
-            State::Cold(_) | State::Drops(_) => Stage::Contacts,
+            State::Cold(_) | State::Drops(..) => Stage::Contacts,
             State::Seconds(seconds) => match &seconds.work {
-                None | Some(Work::Identification(_) | Work::Rest(..) | Work::Trial(_)) => {
+                None
+                | Some(Work::Identification(_) | Work::Room(_) | Work::Rest(..) | Work::Trial(_)) => {
                     Stage::Identification
                 }
                 Some(Work::Passes(_)) => Stage::Passes,
@@ -312,23 +311,28 @@ impl BatchTest for Test {
     }
 
     fn longest(&self) -> Span {
-        LONGEST
+        let recipe = &self.device.recipe;
+        let repeats = recipe.decision.slow_repeats;
+        duration::longest(&self.device.thermostat, &recipe.limits, repeats)
     }
 
     fn shown(&self) -> BatchShown {
         let seconds = match &self.state {
             State::Seconds(seconds) => Some(seconds),
-            State::Cold(_) | State::Drops(_) | State::Off(..) => self.ran.as_ref(),
+            State::Cold(_) | State::Drops(..) | State::Off(..) => self.ran.as_ref(),
+        };
+        let Some(seconds) = seconds else {
+            return BatchShown::default();
         };
         let sockets = self.sockets.iter().zip(&self.contacts);
         let switched = sockets.map(|(socket, contact)| {
-            let Switching { operate, reset } = contact.events().switching;
+            let Switching { operate, reset } = contact.events(seconds.origin).switching;
             let times = |all: Vec<Transition>| all.into_iter().map(|it| it.first_s);
             SocketSwitched::new(socket.number, times(operate), times(reset))
         });
         BatchShown {
             switched: switched.collect(),
-            ..seconds.map(|it| it.shown()).unwrap_or_default()
+            ..seconds.shown()
         }
     }
 }

@@ -1,21 +1,23 @@
-//! Runs the chamber second by second: identification, rest, passes.
+//! Runs the chamber second by second: identification or search for the room, rest, passes.
 
 use super::super::Finding;
-use super::super::device::{Device, Lesson};
+use super::super::device::Device;
 use super::super::recipe::Control;
 use super::contacts::Events;
 use super::repeat::{self, Shown};
 use super::trial::Trial;
+use super::windows::{planned, shown};
+use crate::dut::batch::HeatTrouble;
 use crate::dut::experiment::Experiment;
 use chamber::control::increment::{Increment, Rules};
 use chamber::control::pid::Pid;
 use chamber::control::scheduled::{FuzzyPid, Symmetry};
 use chamber::control::split_range::{Command, SplitRange};
 use chamber::control::{Controller, Law, Observed};
-use chamber::lag::{Record, Transition};
-use chamber::plan::narrowed;
+use chamber::lag::Record;
 use chamber::program::{Phase, Program, Waiting, Window};
 use chamber::tune::identify::{Identification, Step};
+use chamber::tune::room::{self, RoomSearch};
 use chamber::tune::{Identified, Settings};
 use chamber::watch::slope::SlidingSlope;
 use chamber::watch::{Second, Watch};
@@ -57,6 +59,8 @@ pub struct Known {
 pub enum Work {
     /// Identification of the chamber, with a step of the heater.
     Identification(Box<Identification>),
+    /// Search for the temperature of the room around a chamber whose response the plant states.
+    Room(Box<RoomSearch>),
     /// Rest with the fan only, for the remaining seconds.
     Rest(Known, u32),
     /// Passes through the windows.
@@ -66,12 +70,18 @@ pub enum Work {
 }
 
 impl Work {
-    /// Starts with an identification, unless the response of the chamber is known. Then starts with a rest, because the
-    /// chamber may still give off heat of an earlier batch. An experiment always identifies.
+    /// Starts with an identification, unless the response of the chamber is known: from an earlier batch, whose heat it may
+    /// still give off, so that it rests; or from the plant, which does not know the room. An experiment always identifies.
     pub fn new(device: &Device, is_experiment: bool, ambient_c: f64, operate_c: f64) -> Self {
-        match device.response().filter(|_| !is_experiment) {
-            Some(chamber) => Self::Rest(Known { chamber, ambient_c }, REST_S),
-            None => {
+        let lesson = device.lesson.as_deref().filter(|_| !is_experiment);
+        let stated = device.stated.filter(|_| !is_experiment);
+        match (lesson, stated) {
+            (Some(lesson), _) => {
+                let chamber = lesson.chamber;
+                Self::Rest(Known { chamber, ambient_c }, REST_S)
+            }
+            (None, Some(stated)) => Self::Room(Box::new(RoomSearch::new(&stated.identified()))),
+            (None, None) => {
                 let run = Identification::new(STEP, ambient_c, operate_c);
                 Self::Identification(Box::new(run))
             }
@@ -89,7 +99,9 @@ impl Work {
         seen: &Seen,
         (record, parts): (&Record, &dyn Fn() -> Vec<Shown>),
     ) -> Result<Option<Command>, Finding> {
-        let control_c = seen.control_c.ok_or(Finding::SensorBroken)?;
+        let control_c = seen
+            .control_c
+            .ok_or(Finding::Heat(HeatTrouble::ThermometerBroken))?;
         match self {
             Self::Identification(run) => match run.step(control_c) {
                 Ok(Step::Go(command)) => Ok(Some(command)),
@@ -109,7 +121,18 @@ impl Work {
                     };
                     Ok(Some(Command::OFF))
                 }
-                Err(_) => Err(Finding::NotIdentified),
+                Err(_) => Err(Finding::Heat(HeatTrouble::NotIdentified)),
+            },
+            Self::Room(search) => match search.step(control_c) {
+                room::Step::Go(command) => Ok(Some(command)),
+                room::Step::Done { room_c, vented } => {
+                    let known = Known {
+                        chamber: search.chamber(),
+                        ambient_c: room_c,
+                    };
+                    *self = Self::Rest(known, if vented { REST_S } else { 0 });
+                    Ok(Some(Command::OFF))
+                }
             },
             Self::Rest(known, 0) => {
                 let passes = Passes::new(device, known, control_c);
@@ -128,18 +151,26 @@ impl Work {
     /// Returns the set point of this second, C; `None` before the passes.
     pub fn set_c(&self) -> Option<f64> {
         match self {
-            Self::Identification(_) | Self::Rest(..) | Self::Trial(_) => None,
+            Self::Identification(_) | Self::Room(_) | Self::Rest(..) | Self::Trial(_) => None,
             Self::Passes(passes) => Some(passes.program.set_point().value_c),
         }
     }
 
-    /// Returns the temperature of the room, C, once the response of the chamber is known; `None` before.
+    /// Returns the temperature of the room, C, once response and room are known; `None` before.
     pub fn ambient_c(&self) -> Option<f64> {
         match self {
-            Self::Identification(_) => None,
+            Self::Identification(_) | Self::Room(_) => None,
             Self::Rest(known, _) => Some(known.ambient_c),
             Self::Passes(passes) => Some(passes.ambient_c),
             Self::Trial(trial) => Some(trial.ambient_c()),
+        }
+    }
+
+    /// Returns when the present pass began, s of the record; `None` before and in the first one.
+    pub fn later_pass_s(&self) -> Option<f64> {
+        match self {
+            Self::Identification(_) | Self::Room(_) | Self::Rest(..) | Self::Trial(_) => None,
+            Self::Passes(passes) => passes.later_pass_s,
         }
     }
 
@@ -147,6 +178,7 @@ impl Work {
     pub fn chamber(&self) -> Option<Identified> {
         match self {
             Self::Identification(_) => None,
+            Self::Room(search) => Some(search.chamber()),
             Self::Rest(known, _) => Some(known.chamber),
             Self::Passes(passes) => Some(passes.chamber),
             Self::Trial(trial) => Some(trial.chamber()),
@@ -165,6 +197,8 @@ pub struct Passes {
     slope: SlidingSlope,
     /// Number of passes.
     passes: usize,
+    /// When the present pass began, s of the record; `None` in the first one.
+    later_pass_s: Option<f64>,
     /// Seconds in the present phase.
     stayed_s: u32,
     lag_s: f64,
@@ -184,11 +218,7 @@ impl Passes {
             .windows(&device.recipe.limits)
             .unwrap_or_else(|| panic!("a recipe without windows is not feasible"));
         let lesson = device.lesson.as_deref();
-        let [operate, reset] = lesson.map_or(expected, |it| it.windows);
-        let batch = lesson.map_or(0, |it: &Lesson| it.batch);
-        let knows = lesson.is_some_and(|it| it.lag.is_some());
-        let batch = usize::try_from(batch).unwrap_or(usize::MAX);
-        let all = thermostat.strategy().passes(batch, knows, operate, reset);
+        let all = planned(&thermostat.strategy(), lesson, expected);
         let lag_s = lesson
             .and_then(|it| it.lag)
             .map_or(thermostat.part.lag_s, |it| it.seconds);
@@ -200,6 +230,7 @@ impl Passes {
             controller: controller(device, found),
             watch: Watch::new(found),
             slope: SlidingSlope::default(),
+            later_pass_s: None,
             stayed_s: 0,
             lag_s,
             expected,
@@ -235,6 +266,7 @@ impl Passes {
             0
         };
         if pass > before.1 {
+            self.later_pass_s = Some(record.seconds() as f64);
             let events: Vec<Events> = parts().into_iter().map(|it| it.events).collect();
             let [operate, reset] = self.shown(record, &events);
             self.program.narrow(operate, reset, self.lag_s);
@@ -283,7 +315,7 @@ impl Passes {
     }
 
     /// Checks the slope over the last minute within the windows against the limit of the recipe; fails with
-    /// [`Finding::RampTooFast`].
+    /// [`HeatTrouble::RampTooFast`].
     fn check_slope(
         &mut self,
         device: &Device,
@@ -301,7 +333,7 @@ impl Passes {
                 .zip(most)
                 .is_some_and(|(slope, most)| slope.abs() > most);
         match exceeds {
-            true => Err(Finding::RampTooFast),
+            true => Err(Finding::Heat(HeatTrouble::RampTooFast)),
             false => Ok(()),
         }
     }
@@ -310,21 +342,6 @@ impl Passes {
         let [operate, reset] = self.expected;
         shown(record, events, self.lag_s, [operate, reset])
     }
-}
-
-/// Returns the operate and reset windows, narrowed to the temperatures at which the contacts last switched.
-pub fn shown(record: &Record, events: &[Events], lag_s: f64, expected: [Window; 2]) -> [Window; 2] {
-    let filtered = record.filtered(lag_s);
-    let window = |of: &dyn Fn(&Events) -> Option<Transition>, expected: Window| {
-        let last = |it: &Events| filtered.at(of(it)?.first_s).map(|at| at.celsius);
-        let temperatures: Vec<f64> = events.iter().filter_map(last).collect();
-        narrowed(&temperatures, expected)
-    };
-    let [operate, reset] = expected;
-    [
-        window(&|it| it.switching.operate.last().copied(), operate),
-        window(&|it| it.switching.reset.last().copied(), reset),
-    ]
 }
 
 fn controller(device: &Device, chamber: &Identified) -> Controller {

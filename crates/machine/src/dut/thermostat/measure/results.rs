@@ -4,8 +4,9 @@ use super::Ended;
 use super::contacts::Events;
 use super::creep::{self, Pulse};
 use super::drop::Found;
-use super::passes::{Work, shown};
-use crate::dut::batch::{BatchOrder, BatchTrouble, SocketResult};
+use super::passes::Work;
+use super::windows::shown;
+use crate::dut::batch::{BatchOrder, BatchTrouble, HeatTrouble, SocketResult};
 use crate::dut::record::Own;
 use crate::dut::thermostat::certificate::Certificate;
 use crate::dut::thermostat::device::{Device, Lesson, SENSOR_LAG_S};
@@ -38,14 +39,22 @@ pub struct Recorded<'a> {
     pub events: Vec<Events>,
     /// True for each contact that was open before heating.
     pub cold_open: Vec<bool>,
-    /// Contact resistances of the sockets whose contact was closed before heating, in their order.
-    pub drops: &'a [Found],
+    /// Contact resistances before heating with the numbers of their sockets; not of a contact that was open, or not read.
+    pub drops: &'a [(u16, Found)],
     /// Resistances in the last rise, by the place of the contact in the batch.
     pub pulses: &'a [(usize, Pulse)],
     /// Temperature of the room, C.
     pub ambient_c: f64,
     /// Last reading of the reference thermometer.
     pub last: &'a Sample,
+}
+
+impl Recorded<'_> {
+    /// Returns the contact resistance of a socket before heating; `None` when it was not measured.
+    fn drop_of(&self, socket: u16) -> Option<&Found> {
+        let of_socket = |(number, _): &&(u16, Found)| *number == socket;
+        self.drops.iter().find(of_socket).map(|(_, found)| found)
+    }
 }
 
 /// Returns lag and scatter of the lot, and true when passes have measured the lag. The lag comes from this batch, else
@@ -92,7 +101,11 @@ pub fn batch(
     work: Option<&Work>,
 ) -> Vec<SocketResult> {
     let Some(chamber) = work.and_then(Work::chamber) else {
-        return void(device, order, Some(Ended::Found(Finding::NotIdentified)));
+        return void(
+            device,
+            order,
+            Some(Ended::Found(Finding::Heat(HeatTrouble::NotIdentified))),
+        );
     };
     let (lag, is_known, scatter_k) = lot(device, recorded.record, &recorded.events);
     let expected = device.thermostat.windows(&device.recipe.limits);
@@ -122,7 +135,6 @@ fn judged(
         scatter_k: lesson.scatter_k,
         sensor_lag_s: SENSOR_LAG_S,
     };
-    let mut drops = recorded.drops.iter();
     let filtered = recorded.record.filtered(lag.seconds);
     let one = |(index, socket): (usize, &u16)| {
         let mut record = TestRecord::default();
@@ -131,7 +143,7 @@ fn judged(
         if recorded.cold_open[index] {
             record.stop(Finding::OpenCold);
         } else {
-            let cold = drops.next();
+            let cold = recorded.drop_of(*socket);
             let own = recorded.pulses.iter().filter(|(place, _)| *place == index);
             let pulses: Vec<Pulse> = own.map(|(_, pulse)| *pulse).collect();
             contact(&mut record, cold, &pulses, &events.switching);

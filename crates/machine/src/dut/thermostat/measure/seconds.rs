@@ -8,6 +8,7 @@ use super::creep::{EACH_SECOND, Pulse};
 use super::drop;
 use super::passes::{Seen, Work};
 use super::repeat::Shown;
+use crate::dut::batch::HeatTrouble;
 use crate::dut::batch_shown::{AirCurve, BatchShown};
 use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
@@ -26,6 +27,8 @@ use units::{RigTime, Span, Volt};
 const SECOND: Span = Span::ms(1_000);
 /// Time after which the safety chain must be closed, s: the airflow switch needs it.
 const CHAIN_S: usize = 15;
+/// Time after which every input of the chain must have been read, s.
+const READ_S: usize = 3;
 /// Greatest age of an input of the safety chain that counts.
 const FRESH: Span = Span::ms(2_000);
 /// Range of room temperatures in which a chamber may stand, C.
@@ -206,7 +209,9 @@ impl Seconds {
         let points = &device.points;
         let reference = usable(image, points.reference);
         let control_c = usable(image, points.control).map(|it| it.value);
-        let reading = reference.clone().ok_or(Finding::SensorBroken)?;
+        let reading = reference
+            .clone()
+            .ok_or(Finding::Heat(HeatTrouble::ThermometerBroken))?;
         if self.work.is_none() {
             self.start(device, reading.value);
         }
@@ -220,14 +225,16 @@ impl Seconds {
         let reference_c = Some(reading.value);
         self.last = Some(reading);
         self.check_chain(device, now, image)?;
-        let now_s = now.since(self.origin).as_seconds();
+        let later_pass_s = self.work.as_ref().and_then(Work::later_pass_s);
         let seen = Seen {
             control_c,
             reference_c,
             ambient_c: self.ambient_c,
-            waiting: waiting(contacts, now_s),
+            waiting: waiting(contacts, (now, self.origin), later_pass_s),
         };
-        let parts = || contacts.iter().filter_map(|it| part(device, it)).collect();
+        let origin = self.origin;
+        let shown = |it| part(device, it, origin);
+        let parts = || contacts.iter().filter_map(shown).collect();
         self.check_sensors(&seen)?;
         let Some(work) = &mut self.work else {
             return Ok(Some(Command::OFF));
@@ -251,7 +258,10 @@ impl Seconds {
     pub fn shown(&self) -> BatchShown {
         let passes = match &self.work {
             Some(Work::Passes(passes)) => passes.progress(),
-            None | Some(Work::Identification(_) | Work::Rest(..) | Work::Trial(_)) => None,
+            None
+            | Some(Work::Identification(_) | Work::Room(_) | Work::Rest(..) | Work::Trial(_)) => {
+                None
+            }
         };
         let (pass, passes) = passes.unzip();
         let percent = |share: f64| (share * 1000.0).round() / 10.0;
@@ -283,7 +293,7 @@ impl Seconds {
             .control_c
             .is_some_and(|it| self.unpowered.step(it, self.command));
         match heats {
-            true => Err(Finding::HeatWithoutCommand),
+            true => Err(Finding::Heat(HeatTrouble::HeatWithoutCommand)),
             false => Ok(()),
         }
     }
@@ -300,24 +310,32 @@ impl Seconds {
     }
 
     fn check_chain(&self, device: &Device, now: RigTime, image: &Image) -> Result<(), Finding> {
-        let is_open = |it| image.input(it, now, FRESH) == Some(false);
-        let [limiter, airflow, mains] = device.points.chain.map(is_open);
-        let settled = self.record.seconds() > CHAIN_S;
-        match (limiter, mains, airflow && settled) {
-            (true, _, _) => Err(Finding::LimiterTripped),
-            (false, true, _) => Err(Finding::MainsLost),
-            (false, false, true) => Err(Finding::AirflowLost),
-            (false, false, false) => Ok(()),
-        }
+        let read = device.points.chain.map(|it| image.input(it, now, FRESH));
+        broken_link(read, self.record.seconds()).map_or(Ok(()), Err)
+    }
+}
+
+/// Returns what limiter, airflow and mains, read in this order, say after some seconds with the fan on; `None` for an input
+/// that was not read for two seconds.
+fn broken_link([limiter, airflow, mains]: [Option<bool>; 3], seconds: usize) -> Option<Finding> {
+    let is_open = |it: Option<bool>| it == Some(false);
+    let unread = [limiter, airflow, mains].contains(&None) && seconds > READ_S;
+    let still = is_open(airflow) && seconds > CHAIN_S;
+    match (is_open(limiter), is_open(mains), still, unread) {
+        (true, _, _, _) => Some(Finding::Heat(HeatTrouble::LimiterTripped)),
+        (false, true, _, _) => Some(Finding::Heat(HeatTrouble::MainsLost)),
+        (false, false, true, _) => Some(Finding::Heat(HeatTrouble::AirflowLost)),
+        (false, false, false, true) => Some(Finding::Heat(HeatTrouble::ChainNotRead)),
+        (false, false, false, false) => None,
     }
 }
 
 /// Returns what the contact of a part has shown so far.
-fn part(device: &Device, contact: &Contact) -> Option<Shown> {
+fn part(device: &Device, contact: &Contact, origin: RigTime) -> Option<Shown> {
     let socket = device.points.of_contact(contact.input())?;
     Some(Shown {
         socket: socket.number,
-        events: contact.events(),
+        events: contact.events(origin),
     })
 }
 
@@ -334,14 +352,50 @@ fn usable(image: &Image, point: Thermometer) -> Option<Sample> {
     (sample.quality == Quality::Good && sample.value.is_finite()).then(|| sample.clone())
 }
 
-/// Counts the sockets that have yet to switch; a contact that was open when cold does not count.
-fn waiting(contacts: &[Contact], now_s: f64) -> Waiting {
-    let live = contacts.iter().filter(|it| it.cold() == Some(true));
+/// Counts the sockets that have yet to switch. A contact that was open when cold does not count, nor one that a whole pass
+/// has left in its state.
+fn waiting(
+    contacts: &[Contact],
+    (now, origin): (RigTime, RigTime),
+    later_pass_s: Option<f64>,
+) -> Waiting {
+    let live = contacts
+        .iter()
+        .filter(|it| it.cold() == Some(true) && !it.events(origin).is_stuck(later_pass_s));
     let (operated, all) = live.fold((0, 0), |(operated, all), it| {
-        (operated + usize::from(it.is_open(now_s)), all + 1)
+        (operated + usize::from(it.is_open(now)), all + 1)
     });
     Waiting {
         operate: all - operated,
         reset: operated,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unread_link_of_the_chain_is_trouble() {
+        let on = Some(true);
+        assert_eq!(broken_link([on; 3], 100), None);
+        for place in 0..3 {
+            let mut read = [on; 3];
+            read[place] = None;
+            assert_eq!(
+                broken_link(read, 100),
+                Some(Finding::Heat(HeatTrouble::ChainNotRead))
+            );
+            assert_eq!(broken_link(read, 1), None);
+        }
+    }
+
+    #[test]
+    fn an_open_link_says_more_than_an_unread_one() {
+        let read = [None, Some(true), Some(false)];
+        assert_eq!(
+            broken_link(read, 100),
+            Some(Finding::Heat(HeatTrouble::MainsLost))
+        );
     }
 }

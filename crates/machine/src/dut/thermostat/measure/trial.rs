@@ -4,6 +4,7 @@ use super::super::Finding;
 use super::super::device::Device;
 use super::super::response;
 use super::passes::Seen;
+use crate::dut::batch::HeatTrouble;
 use crate::dut::experiment::{Experiment, Found};
 use chamber::control::Observed;
 use chamber::control::split_range::{Command, SplitRange};
@@ -112,7 +113,7 @@ impl Tuning {
             return Ok(Step::Go(0.0));
         }
         let step = self.relay.step(control_c);
-        let step = step.map_err(|_| Finding::NotIdentified)?;
+        let step = step.map_err(|_| Finding::Heat(HeatTrouble::NotIdentified))?;
         let Step::Go(power) = step else {
             return Ok(step);
         };

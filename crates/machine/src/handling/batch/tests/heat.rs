@@ -1,7 +1,7 @@
 //! Tests of heat, lock and cooling when readings, writes or the lock fail.
 
 use super::Scenario;
-use crate::dut::batch::BatchTrouble;
+use crate::dut::batch::{BatchTrouble, HeatTrouble};
 use crate::handling::batch::Phase;
 use crate::handling::trouble::Trouble;
 
@@ -123,9 +123,15 @@ fn a_rack_thermometer_that_stands_still_unlocks_nothing() {
 #[test]
 fn a_test_reports_its_trouble_and_the_rack_cools() {
     let mut it = Scenario::ready();
-    it.rig.meets(BatchTrouble::LimiterTripped);
+    it.rig
+        .meets(BatchTrouble::Heat(HeatTrouble::LimiterTripped));
     it.load(&[1, 2, 3]);
     it.until("judged", |it| it.parts.judged.len() == 3);
-    assert_eq!(it.trouble, [Trouble::Batch(BatchTrouble::LimiterTripped)]);
+    assert_eq!(
+        it.trouble,
+        [Trouble::Batch(BatchTrouble::Heat(
+            HeatTrouble::LimiterTripped
+        ))]
+    );
     it.until_unlocked();
 }
