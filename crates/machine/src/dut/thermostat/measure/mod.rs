@@ -21,7 +21,9 @@ mod trial;
 
 use super::Finding;
 use super::device::Device;
-use crate::dut::batch::{BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble};
+use crate::dut::batch::{
+    BatchCurve, BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble,
+};
 use crate::dut::batch_shown::{BatchShown, SocketSwitched};
 use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
@@ -264,6 +266,24 @@ impl Test {
         }
     }
 
+    /// Returns the heated part of the test, under way or over.
+    fn seconds(&self) -> Option<&Seconds> {
+        match &self.state {
+            State::Seconds(seconds) => Some(seconds),
+            State::Cold(_) | State::Drops(_) | State::Off(..) => self.ran.as_deref(),
+        }
+    }
+
+    fn switched(&self) -> Vec<SocketSwitched> {
+        let sockets = self.sockets.iter().zip(&self.contacts);
+        let one = |(socket, contact): (&Socket, &Contact)| {
+            let Switching { operate, reset } = contact.events().switching;
+            let times = |all: Vec<Transition>| all.into_iter().map(|it| it.first_s);
+            SocketSwitched::new(socket.number, times(operate), times(reset))
+        };
+        sockets.map(one).collect()
+    }
+
     /// Returns the trouble of contacts that were open before heating.
     fn open_sockets(&self) -> Vec<BatchTrouble> {
         let all = self.sockets.iter().zip(&self.contacts);
@@ -316,19 +336,20 @@ impl BatchTest for Test {
     }
 
     fn shown(&self) -> BatchShown {
-        let seconds = match &self.state {
-            State::Seconds(seconds) => Some(seconds),
-            State::Cold(_) | State::Drops(_) | State::Off(..) => self.ran.as_ref(),
-        };
-        let sockets = self.sockets.iter().zip(&self.contacts);
-        let switched = sockets.map(|(socket, contact)| {
-            let Switching { operate, reset } = contact.events().switching;
-            let times = |all: Vec<Transition>| all.into_iter().map(|it| it.first_s);
-            SocketSwitched::new(socket.number, times(operate), times(reset))
-        });
+        let seconds = self.seconds();
         BatchShown {
-            switched: switched.collect(),
-            ..seconds.map(|it| it.shown()).unwrap_or_default()
+            switched: self.switched(),
+            ..seconds.map(Seconds::shown).unwrap_or_default()
         }
+    }
+
+    fn curve(&self) -> Option<BatchCurve> {
+        let seconds = self.seconds().filter(|_| self.experiment.is_none())?;
+        seconds.last.as_ref()?;
+        Some(BatchCurve {
+            origin: seconds.origin,
+            air: seconds.kept.clone(),
+            switched: self.switched(),
+        })
     }
 }
