@@ -1,4 +1,4 @@
-//! Journal of the outputs: every change of a digital output, expiry of a host watchdog, fault that strikes, coil that
+//! Journal of the outputs: every change of a digital output, analog output that goes on or off, expiry of a host watchdog, fault that strikes, coil that
 //! is overdriven, move of the main contacts of a contactor, and reply that this computer made late.
 //!
 //! The journal records at the terminals, between modules and world, so that it holds the signals that the actuators
@@ -26,6 +26,17 @@ pub enum Entry {
         module: String,
         /// Bit n = channel n.
         bits: u16,
+    },
+    /// The level of an analog output has crossed [`ON_V`].
+    Level {
+        /// Rig time, microseconds.
+        t_us: u64,
+        /// Identifier of the module.
+        module: String,
+        /// Channel.
+        channel: u8,
+        /// True when the level is above.
+        on: bool,
     },
     /// A fault has struck the running rig.
     Struck {
@@ -60,6 +71,9 @@ pub enum Entry {
     Contact(ContactMove),
 }
 
+/// Level above which an analog output counts as on, V: more than the offset of a converter.
+pub const ON_V: f64 = 0.01;
+
 /// A world with a journal of its output terminals.
 pub(crate) struct JournaledWorld {
     scene: Box<dyn WorldModel>,
@@ -67,6 +81,8 @@ pub(crate) struct JournaledWorld {
     now_us: u64,
     last_request_us: u64,
     carries: BTreeMap<String, f64>,
+    /// Analog outputs that are on.
+    on: BTreeMap<(String, u8), bool>,
     /// Number of overdrives in the journal.
     overdrives: usize,
     /// Number of moves of contacts in the journal.
@@ -91,6 +107,7 @@ impl JournaledWorld {
             now_us: 0,
             last_request_us: 0,
             carries: BTreeMap::new(),
+            on: BTreeMap::new(),
             overdrives: 0,
             moves: 0,
             late: LateReplies::default(),
@@ -169,6 +186,22 @@ impl JournaledWorld {
         self.moves = all.len();
     }
 
+    /// Records when an analog output goes on or off.
+    fn switch(&mut self, module: &str, channel: u8, on: bool) {
+        if self.listener.is_none() {
+            return;
+        }
+        let before = self.on.insert((module.to_owned(), channel), on);
+        if before.unwrap_or(false) != on {
+            self.send(Entry::Level {
+                t_us: self.now_us,
+                module: module.to_owned(),
+                channel,
+                on,
+            });
+        }
+    }
+
     fn carry(&mut self, module: &str, value: f64) -> bool {
         match self.carries.get_mut(module) {
             Some(carried) => std::mem::replace(carried, value) != value,
@@ -196,6 +229,7 @@ impl Plant for JournaledWorld {
         if channel == 0 {
             self.carry(module, volts);
         }
+        self.switch(module, channel, volts.abs() > ON_V);
         self.scene.analog_out(module, channel, volts);
         self.record_moves();
     }

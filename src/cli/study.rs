@@ -41,6 +41,7 @@ pub enum Document {
   relayrig study storm --seeds 1000 --from 10001
   relayrig study storm --seed 17
   relayrig study figures --only cycle
+  relayrig study thermostat --only faults --seeds 2
   relayrig study transient --cases crates/studies/src/transient/cases.json --rtol 1e-10 --json
 
 Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input."
@@ -75,6 +76,9 @@ pub struct StudyArgs {
     /// Only this broken promise of `promises`
     #[arg(long, value_name = "KEY")]
     pub term: Option<String>,
+    /// Only this section of `thermostat`
+    #[arg(long, value_enum, value_name = "SECTION")]
+    pub only: Option<studies::ThermostatSection>,
     /// Parts of each lot
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub parts: Option<u64>,
@@ -104,6 +108,9 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
         print(&listed(args.json))?;
         return Ok(Exit::Done);
     };
+    if args.only.is_some() && wanted != Study::Thermostat {
+        bail!("--only belongs to `study thermostat`");
+    }
     if wanted == Study::Collision {
         return drawn(args, studies::collision, "collision-speed.svg");
     }
@@ -176,7 +183,11 @@ fn thermostats(args: &StudyArgs) -> anyhow::Result<Exit> {
     }
     let (seeds, sockets) = Study::Thermostat.usual().unwrap_or((1, 1));
     let sockets = usize::try_from(args.parts.unwrap_or(sockets))?;
-    let made = studies::thermostat(args.seeds.unwrap_or(seeds), sockets)?;
+    let made = studies::thermostat(&studies::ThermostatScope {
+        seeds: args.seeds.unwrap_or(seeds),
+        sockets,
+        only: args.only,
+    })?;
     plotted(&made, args, "thermostat-batch.svg")
 }
 

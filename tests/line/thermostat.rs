@@ -149,6 +149,96 @@ fn a_certificate_for_other_sockets_is_refused() {
     assert!(said.contains(expected), "{said}");
 }
 
+const REFEREE: &str = "config/rigs/thermostat/recipes/thermostat-referee.toml";
+const RACK: &str = "config/rigs/thermostat/rack.toml";
+/// Response of a chamber with a weak heater, before the map of the sockets.
+const WEAK: &str = "[chamber]
+gain_k = 10.0
+time_constant_s = 22.0
+delay_s = 6.7
+slope_k_per_s = 0.08
+loss_per_k = 0.0018
+fan = 0.03
+vent_per_k = 0.008
+first_order = { gain_k = 22.0, time_constant_s = 52.0, delay_s = 4.5 }
+
+[map]";
+
+/// Bad input: file, text in it, text in its place, and what the program says of it.
+const BAD: [[&str; 4]; 10] = [
+    [
+        RIG,
+        "02 = { module = \"socket_di_a\", channel = 1,",
+        "02 = { module = \"socket_di_a\", channel = 0,",
+        "[socket].02: found socket_di_a channel 0, expected a terminal of its own",
+    ],
+    [
+        RIG,
+        "select = 1, row",
+        "select = 0, row",
+        "[socket].02.select: found 0, expected a number of its own",
+    ],
+    [
+        RIG,
+        "model = \"I-7033\"\ntype = \"22\"",
+        "model = \"I-7033\"\ntype = \"0F\"",
+        "[module.rtd].type: found \"0F\", expected 20, 21, 22, 23, 24, 25, 26, 27 for an I-7033",
+    ],
+    [
+        RIG,
+        "model = \"I-7033\"",
+        "model = \"I-7018\"",
+        "[module.rtd].type: found \"22\", expected 0E, 0F, 10, 11 for an I-7018",
+    ],
+    [
+        RECIPE,
+        "{ low = 80.0, high = 90.0 }",
+        "{ low = 84.8, high = 85.2 }",
+        "[limits].operate_temperature_c: found 84.8 to 85.2, expected limits more than 0.71 K apart",
+    ],
+    [
+        RECIPE,
+        "{ low = 80.0, high = 90.0 }",
+        "{ low = 180.0, high = 196.0 }",
+        "[limits].operate_temperature_c.high: found 196, expected a window that ends below 195 C",
+    ],
+    [
+        RECIPE,
+        "{ low = 57.0, high = 73.0 }",
+        "{ low = 42.0, high = 73.0 }",
+        "[limits].reset_temperature_c.low: found 42, expected a window that ends above 40 C",
+    ],
+    [
+        RECIPE,
+        "learning_k_per_min = 5.0",
+        "learning_k_per_min = 12.0",
+        "[test].learning_k_per_min: found 12.0, expected a number of K/min from 0.1 to 10",
+    ],
+    [
+        REFEREE,
+        "rate_k_per_min = 0.5",
+        "rate_k_per_min = 0.55",
+        "[test].rate_k_per_min: found 0.55, expected at most 0.51",
+    ],
+    [
+        RACK,
+        "[map]",
+        WEAK,
+        "[test].learning_k_per_min: found 5, expected at most 3.6 K/min",
+    ],
+];
+
+#[test]
+fn bad_input_is_refused_with_key_found_and_expected() {
+    for (number, [file, usual, bad, expected]) in BAD.into_iter().enumerate() {
+        let workshop = Workshop::new(&format!("thermostat-bad-{number}"));
+        workshop.change(file, usual, bad);
+        let said = workshop.run("--config config/rigs/thermostat config check");
+        let said = said.with_status(2).stderr.clone();
+        assert!(said.contains(expected), "{expected}\n{said}");
+    }
+}
+
 #[test]
 fn the_history_keeps_the_certificate_as_a_calibration() {
     let workshop = Workshop::new("thermostat-calibrate");

@@ -5,7 +5,7 @@ use machine::dut::experiment::Found;
 use machine::dut::promise::Broken;
 use machine::dut::prompt::Prompt;
 use machine::handling::inside::Inside;
-use machine::handling::output::{Interrupted, Judged, Landed, NestExit};
+use machine::handling::output::{EndedBatch, Interrupted, Judged, Landed, NestExit};
 use machine::handling::wear::Uses;
 use machine::station::annunciator::ListedAlarm;
 use machine::station::packml;
@@ -21,6 +21,8 @@ pub enum Event {
     State(packml::State),
     /// A part was judged; it has a verdict now.
     Judged(Box<Judged>),
+    /// The test of a batch ended; its parts were judged before.
+    BatchEnded(Box<EndedBatch>),
     /// The beam of a bin detected the falling part.
     Landed(Landed),
     /// The part left the nest.

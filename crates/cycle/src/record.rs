@@ -10,6 +10,9 @@ impl Cycle {
         for judged in output.record.parts.judged.drain(..) {
             self.send(Event::Judged(Box::new(judged)));
         }
+        if let Some(ended) = output.record.parts.batch.take() {
+            self.send(Event::BatchEnded(ended));
+        }
         for left in output.record.parts.left.drain(..) {
             self.send(Event::Left(left));
         }

@@ -84,7 +84,11 @@ pub(super) fn packed(curve: &CurveRecord) -> Vec<u8> {
 }
 
 /// Unpacks a blob into time offsets and values; `None` unless it holds exactly `samples` of them.
-fn unpacked(mut bytes: &[u8], samples: usize, step: f64) -> Option<(Vec<i64>, Vec<Option<f64>>)> {
+pub(super) fn unpacked(
+    mut bytes: &[u8],
+    samples: usize,
+    step: f64,
+) -> Option<(Vec<i64>, Vec<Option<f64>>)> {
     let (mut at, mut steps) = (0_i64, 0_i64);
     let (mut offsets, mut values) = (Vec::new(), Vec::new());
     while !bytes.is_empty() {

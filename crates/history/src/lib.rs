@@ -10,7 +10,8 @@
 //!   and channel. The run names its recipe and calibration by their hashes.
 //! - Judging by another recipe writes nothing ([`rejudged`]). Only a run that was copied whole can be deleted
 //!   ([`Store::prune`]).
-//! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]).
+//! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]); a batch keeps those of its chamber
+//!   ([`Batch`]).
 //! - A plan for tooling keeps its steps with the persons who did them ([`tooling`]).
 //! - A file belongs to one rig, real or simulated: its first run marks it ([`check_rig`]).
 //! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`,
@@ -41,6 +42,7 @@ mod answers;
 mod approval;
 mod archive;
 mod backup;
+mod batches;
 pub mod columns;
 pub mod csv;
 mod curve;
@@ -84,6 +86,7 @@ pub use alarms::{Alarm, AlarmState, Shelf};
 pub use answers::PromptAnswer;
 pub use approval::{SIGNATURES, Signature, signatures};
 pub use archive::Archive;
+pub use batches::{Batch, BatchAir, BatchRecord, BatchSignal, BatchSocket};
 pub use curve::CurveRecord;
 pub use decision::Decision;
 pub use error::{HistoryError, Result};

@@ -4,7 +4,7 @@
 //! A number that is not finite is stored as null.
 
 use super::{
-    AlarmChangeRecord, CurveRecord, InsideRecord, LotStateRecord, OrderRecord,
+    AlarmChangeRecord, BatchRecord, CurveRecord, InsideRecord, LotStateRecord, OrderRecord,
     ReferenceCheckRecord, ReopeningRecord, RunEndRecord, WearRecord,
 };
 use data_encoding::HEXLOWER;
@@ -200,6 +200,8 @@ pub enum Row {
     Calibrated(CalibratedRecord),
     /// A judged part.
     Part(PartRecord),
+    /// A batch whose test has ended.
+    Batch(BatchRecord),
     /// A part that the beam of a bin saw.
     Landed(LandingRecord),
     /// A judged part that was interrupted.

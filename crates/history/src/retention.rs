@@ -1,7 +1,7 @@
 //! Retention: deletes the parts of runs that were copied whole.
 //!
 //! - Backup and export call [`Store::record_export`] once their file is on the disk. Only closed runs count as copied.
-//! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves and alarms of copied runs that ended
+//! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves, batches and alarms of copied runs that ended
 //!   before a given instant, one transaction per run, and leaves runs of which a target of the
 //!   [outbox](super::outbox) still lacks rows. Lot, run, recipe and the note of the copy stay: run numbers
 //!   continue, and the note names the file that holds the parts.
@@ -98,7 +98,9 @@ impl Store {
 }
 
 /// Statements that delete the rows of a run; a table that refers to another comes first.
-pub(super) const EMPTYING: [&str; 8] = [
+pub(super) const EMPTYING: [&str; 10] = [
+    "DELETE FROM batch_curve WHERE batch_id IN (SELECT id FROM batch WHERE run_id = ?1)",
+    "DELETE FROM batch WHERE run_id = ?1",
     "DELETE FROM series WHERE run_id = ?1",
     "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
     "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",

@@ -4,8 +4,8 @@
 
 use super::error::{Doing, HistoryError, Result};
 use super::{
-    CalibratedRecord, CalibrationRecord, LotRecord, PartRecord, Row, alarm_states, gates, insert,
-    inside, landing, open, orders, owner, reopening, run_end, scans, series, wear,
+    CalibratedRecord, CalibrationRecord, LotRecord, PartRecord, Row, alarm_states, batches, gates,
+    insert, inside, landing, open, orders, owner, reopening, run_end, scans, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
@@ -229,6 +229,7 @@ fn write(
         }
         Row::Calibrated(it) => calibrated(transaction, row_ids, it),
         Row::Part(part) => insert::part(transaction, row_ids, part),
+        Row::Batch(it) => batches::insert(transaction, row_ids, it),
         Row::Interrupted(it) => landing::interrupted(transaction, row_ids, it),
         Row::Landed(landed) => landing::landing(transaction, row_ids, landed),
         Row::Alarm(alarm) => landing::alarm(transaction, row_ids, alarm),

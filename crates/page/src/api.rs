@@ -277,6 +277,11 @@ where
             history::show,
         ),
         Route::get(
+            "/api/history/batches",
+            "Batches of a lot, with the curves of their chamber; none for parts that were tested one by one.",
+            history::batches,
+        ),
+        Route::get(
             "/api/history/query",
             "Parts that match the filter.",
             history::query,

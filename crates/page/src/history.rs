@@ -27,8 +27,12 @@ use axum::response::IntoResponse;
 use history::inquiry::charts::{Charted, charts};
 use history::inquiry::figures::{self, Classes};
 use history::inquiry::{InquiryError, checks};
-use history::{Alarm, Archive, Filter, LotSummary, Moment, OrderChoice, OrderEntry, Part, Yield};
-use members::{Charting, OfParts, OneParameter, Paging, Runs, TimeSpan, ValueRange, filter};
+use history::{
+    Alarm, Archive, Batch, Filter, LotSummary, Moment, OrderChoice, OrderEntry, Part, Yield,
+};
+use members::{
+    Charting, OfParts, OneLot, OneParameter, Paging, Runs, TimeSpan, ValueRange, filter,
+};
 use quality::Summary;
 use quality::rules::Rules;
 pub(super) use readers::Readers;
@@ -89,6 +93,16 @@ pub(super) async fn list(
 ) -> JsonResult<Vec<LotSummary>> {
     let read = move |archive: &Archive| Ok(archive.lots_since(&filter(runs), opened.since)?);
     readers.read(read).await.map(Json)
+}
+
+/// `GET /api/history/batches`.
+pub(super) async fn batches(State(app): App, Asked(lot): Asked<OneLot>) -> JsonResult<Vec<Batch>> {
+    let filter = filter(lot);
+    let read = move |archive: &Archive| {
+        checks::known_runs(archive, &filter)?;
+        Ok(archive.batches(&filter)?)
+    };
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/yield`.

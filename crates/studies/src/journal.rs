@@ -26,8 +26,9 @@ pub enum Entry {
         /// Fault as the script writes it.
         fault: String,
     },
-    /// A host watchdog has expired; the studies do not use it.
-    Expired {},
+    /// Another entry, which the studies do not use.
+    #[serde(other)]
+    Other,
 }
 
 /// Result of a story.

@@ -80,6 +80,7 @@ pub use output::Report;
 pub use plan::{SCENES as PLAN_SCENES, study as plan};
 pub use ssr::{PARTS as SSR_PARTS, study as ssr};
 pub use thermostat::study as thermostat;
+pub use thermostat::{Scope as ThermostatScope, Section as ThermostatSection};
 pub use transient::{USUAL_RTOL, study as transient};
 
 /// The studies, in the order of the list that `relayrig study` prints.

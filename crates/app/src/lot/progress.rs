@@ -131,6 +131,7 @@ impl<'a> LotProgress<'a> {
             }),
             Event::State(_)
             | Event::Calibrated(_)
+            | Event::BatchEnded(_)
             | Event::Found(_)
             | Event::Checked(..)
             | Event::Ordered(..)

@@ -106,6 +106,9 @@ impl Recorder {
                 }
                 self.judged(judged, lot);
             }
+            Event::BatchEnded(ended) => {
+                self.rows.push(Row::Batch(rows::batch(&lot.context, ended)))
+            }
             Event::Alarm(alarm, at) => self.rows.extend(self.journal.alarm(alarm, wall_us(*at))),
             Event::Interrupted(interrupted) => self.interrupted(interrupted, lot),
             Event::ListedAlarms(standing, at) => {

@@ -1,11 +1,11 @@
 //! Converts a judged part into rows of the history and a JSON object.
 
 use super::LotContext;
-use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
+use history::{BatchRecord, BatchSignal, CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use machine::dut::{Characteristic, Judgement, Verdict};
 use machine::gauge::{Limit, Reading};
 use machine::handling::ledger::PartRole;
-use machine::handling::output::Judged;
+use machine::handling::output::{EndedBatch, Judged};
 use machine::instrument::trace::Trace;
 use machine::rig::wiring::Wiring;
 use serde_json::{Map, Value, json};
@@ -73,6 +73,61 @@ fn curves(trace: &Trace, wiring: &Wiring, at: impl Fn(RigTime) -> i64) -> Vec<Cu
         }
     }
     curves
+}
+
+/// Steps in which the history keeps temperatures and slopes of the air, in their units.
+const AIR_STEP: f64 = 0.01;
+
+/// Returns the row of a batch with its curves: set point, reference and rate, and for each socket 1 when its contact opened
+/// and 0 when it closed.
+pub fn batch(context: &LotContext, ended: &EndedBatch) -> BatchRecord {
+    let begin_us = context.wall_us(ended.curve.origin);
+    let at_us = |t_s: f64| begin_us + (t_s * 1e6).round() as i64;
+    let air = &ended.curve.air;
+    let of_air = |signal: &str, unit: &str, values: &mut dyn Iterator<Item = Option<f64>>| {
+        let times = air.t_s.iter().map(|it| at_us(f64::from(*it)));
+        BatchSignal {
+            seq: None,
+            curve: CurveRecord {
+                signal: signal.to_owned(),
+                unit: unit.to_owned(),
+                step: AIR_STEP,
+                samples: times.zip(values).collect(),
+            },
+        }
+    };
+    let mut signals = vec![
+        of_air("set_point", "C", &mut air.set_c.iter().copied()),
+        of_air(
+            "reference",
+            "C",
+            &mut air.reference_c.iter().map(|it| Some(*it)),
+        ),
+        of_air("rate", "K/min", &mut air.rate_k_per_min.iter().copied()),
+    ];
+    signals.extend(ended.curve.switched.iter().map(|it| {
+        let opened = it.opened_s.iter().map(|t| (at_us(*t), Some(1.0)));
+        let closed = it.closed_s.iter().map(|t| (at_us(*t), Some(0.0)));
+        let mut samples: Vec<(i64, Option<f64>)> = opened.chain(closed).collect();
+        samples.sort_by_key(|(at_us, _)| *at_us);
+        let part = ended.parts.iter().find(|(socket, _)| *socket == it.socket);
+        BatchSignal {
+            seq: part.map(|(_, seq)| *seq),
+            curve: CurveRecord {
+                signal: format!("socket_{}", it.socket),
+                unit: String::new(),
+                step: 1.0,
+                samples,
+            },
+        }
+    }));
+    BatchRecord {
+        lot: context.order.lot.clone(),
+        number: ended.number,
+        begin_us,
+        ended_us: context.wall_us(ended.ended),
+        signals,
+    }
 }
 
 fn measurement(

@@ -114,6 +114,7 @@ impl Narrator {
             | Event::Ordered(..)
             | Event::Inside(..)
             | Event::Calibrated(_)
+            | Event::BatchEnded(_)
             | Event::Found(_)
             | Event::Prompted(_)
             | Event::PromiseBroken(_) => {}

@@ -199,6 +199,7 @@ impl Observed {
             | Event::Ordered(..)
             | Event::Inside(..)
             | Event::Calibrated(_)
+            | Event::BatchEnded(_)
             | Event::Found(_)
             | Event::Prompted(_)
             | Event::PromiseBroken(_) => {}

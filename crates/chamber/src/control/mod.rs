@@ -20,7 +20,7 @@ use filter::Delay;
 use increment::Increment;
 use pid::Pid;
 use scheduled::FuzzyPid;
-use split_range::{Command, SplitRange};
+use split_range::{Command, SplitRange, VentLag};
 
 /// Input of a feedback law in one second.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,6 +87,7 @@ pub struct Controller {
     forward: Option<FeedForward>,
     delay: Delay,
     split: SplitRange,
+    vent: VentLag,
     door: DoorHold,
 }
 
@@ -99,6 +100,7 @@ impl Controller {
             forward: None,
             delay: Delay::of(0.0),
             split,
+            vent: VentLag::default(),
             door: DoorHold::default(),
         }
     }
@@ -147,9 +149,10 @@ impl Controller {
             self.law.shift(forward.learn(set, power, &task));
         }
         if seen.door_open {
+            self.vent = VentLag::default();
             return Command::OFF;
         }
-        self.split.command(power, seen)
+        self.vent.step(self.split, power, seen)
     }
 }
 

@@ -1,10 +1,18 @@
 //! Split range: one signed power becomes the duty of the heater or the opening of the vent.
+//!
+//! Heat reaches the air through the heater, which has a lag; the vent changes the air at once. A loop that is tuned on the
+//! heater would oscillate on the vent. [`VentLag`] gives the vent a lag too, so that one tuning fits both.
 
 use super::Observed;
 use crate::tune::Identified;
 
 /// Least excess of the chamber over ambient at which the vent is used, K.
 const LEAST_EXCESS_K: f64 = 1.0;
+
+/// Lag of the vent, as a share of the time constant of the response to the heater: about the share of the heater itself.
+const VENT_LAG: f64 = 0.4;
+/// Power up to which the vent stays behind, 1 = full heater: after an upset, as an open door, it acts at once.
+const MOST_BEHIND: f64 = 0.1;
 
 /// Outputs of one second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -28,6 +36,8 @@ impl Command {
 pub struct SplitRange {
     /// Power that the fully open vent removes per kelvin above ambient, 1/K.
     vent_per_k: f64,
+    /// Lag of the vent behind a small change of its power, s.
+    lag_s: f64,
 }
 
 impl SplitRange {
@@ -35,6 +45,7 @@ impl SplitRange {
     pub fn of(chamber: &Identified) -> Self {
         Self {
             vent_per_k: chamber.vent_per_k,
+            lag_s: VENT_LAG * chamber.time_constant_s.max(0.0),
         }
     }
 
@@ -66,11 +77,36 @@ impl SplitRange {
     }
 }
 
+/// Power of the vent behind the one that the loop demands, stepped once a second; starts at none.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct VentLag {
+    power: f64,
+}
+
+impl VentLag {
+    /// Takes the power of this second, 1 = full heater, and returns the outputs: heat at once, the vent with its lag.
+    pub fn step(&mut self, split: SplitRange, power: f64, seen: &Observed) -> Command {
+        let wanted = power.min(0.0);
+        self.power += (wanted - self.power) / (split.lag_s + 1.0);
+        self.power = self
+            .power
+            .clamp(wanted - MOST_BEHIND, wanted + MOST_BEHIND)
+            .min(0.0);
+        Command {
+            heater: split.command(power, seen).heater,
+            vent: split.command(self.power, seen).vent,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const SPLIT: SplitRange = SplitRange { vent_per_k: 0.008 };
+    const SPLIT: SplitRange = SplitRange {
+        vent_per_k: 0.008,
+        lag_s: 20.0,
+    };
 
     fn at(measured_c: f64) -> Observed {
         Observed {
@@ -97,6 +133,23 @@ mod tests {
             }
         );
         assert_eq!(SPLIT.command(-9.0, &at(75.0)).vent, 1.0);
+    }
+
+    #[test]
+    fn the_vent_follows_small_changes_with_a_lag() {
+        let mut lag = VentLag::default();
+        let openings: Vec<f64> = (0..200)
+            .map(|_| lag.step(SPLIT, -0.1, &at(75.0)).vent)
+            .collect();
+        assert!((openings[20] / 0.25 - (1.0 - (-1.0_f64).exp())).abs() < 0.03);
+        assert!((openings[199] - 0.25).abs() < 0.001 && openings.is_sorted());
+        assert!(lag.step(SPLIT, 0.1, &at(75.0)).vent > 0.2);
+    }
+
+    #[test]
+    fn the_vent_follows_an_upset_at_once() {
+        let opened = VentLag::default().step(SPLIT, -0.4, &at(75.0)).vent;
+        assert!(opened > 0.6, "{opened}");
     }
 
     #[test]

@@ -32,6 +32,10 @@ const LEAST_DELAY: f64 = 0.65;
 const LEAST_DELAY_S: f64 = 4.2;
 /// Least rise of the heat stage, K.
 const LEAST_RISE_K: f64 = 3.0;
+/// Least rise of a later minute of the heat stage, beyond the drift, K: less shows a heater that has broken.
+const LEAST_MINUTE_K: f64 = 0.3;
+/// That minute, s.
+const MINUTE_S: usize = 60;
 /// Coolings after which a chamber that still drifts is identified as it is.
 const MOST_COOLINGS: usize = 2;
 /// Rounds that find the temperature around a chamber that was cooled.
@@ -54,6 +58,14 @@ pub enum IdentifyError {
         found_k: f64,
         /// Step of the heater.
         power: f64,
+    },
+    /// The chamber stopped following the heater.
+    #[error(
+        "found a rise of {found_k:.1} K in a minute of heat, expected {LEAST_MINUTE_K} K or more"
+    )]
+    Stalls {
+        /// Rise beyond the drift, K.
+        found_k: f64,
     },
     /// The chamber became too hot for the experiment.
     #[error("found {found_c:.1} C, expected at most {limit_c:.1} C")]
@@ -145,6 +157,9 @@ impl Identification {
             return Ok(Step::Go(VENTED));
         }
         let heating = (rest..rest + heat).contains(&second);
+        if heating && second >= rest + MINUTE_S {
+            self.check_minute(measured_c)?;
+        }
         let venting = second >= rest + heat + coast;
         if second == rest + heat + coast + vent {
             return self.settled_figures().map(Step::Done);
@@ -153,6 +168,18 @@ impl Identification {
             heater: if heating { self.power } else { 0.0 },
             vent: if venting { 1.0 } else { 0.0 },
         }))
+    }
+
+    /// Checks that the last minute of heat has warmed the chamber.
+    fn check_minute(&self, measured_c: f64) -> Result<(), IdentifyError> {
+        let rest = LENGTHS_S[0];
+        let drift = slope(&self.readings_c[rest - DRIFT_S..rest]);
+        let before_c = self.readings_c[self.readings_c.len() - 1 - MINUTE_S];
+        let found_k = measured_c - before_c - drift * MINUTE_S as f64;
+        match found_k < LEAST_MINUTE_K {
+            true => Err(IdentifyError::Stalls { found_k }),
+            false => Ok(()),
+        }
     }
 
     /// Performs a second of a cooling; `None` without one, and once it is over.

@@ -64,6 +64,7 @@ pub fn lot_report(
         counts: archive.lot_yield(filter)?,
         parameters: measured(archive, filter)?,
         effectiveness: use_of_time(archive, filter, &runs, ideal_cycle_s)?,
+        batches: &archive.batches(filter)?,
         rejects: pareto::rejects(archive, filter, LISTED)?,
         alarms: &archive.alarms(filter)?,
         answers: &archive.answers(filter)?,
@@ -110,7 +111,10 @@ pub fn part_certificate(
     let part = parts.iter().rfind(of_part);
     let run = part.and_then(|part| runs.iter().find(|run| run.run == part.run));
     match (part, run) {
-        (Some(part), Some(run)) => Ok(certificate(paper, part, run)),
+        (Some(part), Some(run)) => {
+            let tested_in = archive.batch_of(part)?;
+            Ok(certificate(paper, part, run, tested_in.as_ref()))
+        }
         _ => Err(InquiryError::missing(format!(
             "lot {lot:?} has no part {seq} (in this run and of this recipe)"
         ))),

@@ -4,14 +4,20 @@ use super::data_matrix::data_matrix;
 use super::lot::{limits, source};
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{doubt_decimals, figure, parameter, short_hash};
-use super::{Paper, words};
-use crate::{LotSummary, Measurement, Part};
+use super::{Paper, batch, words};
+use crate::{Batch, LotSummary, Measurement, Part};
 use maud::{Markup, PreEscaped, html};
 use quality::Limits;
 use texts::Lang;
 
-/// Returns the certificate of `part`, which must have its measurements; `run` is the run that tested it.
-pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
+/// Returns the certificate of `part`, which must have its measurements; `run` is the run that tested it, `tested_in` its
+/// batch, if it was tested in one.
+pub fn certificate(
+    paper: &Paper,
+    part: &Part,
+    run: &LotSummary,
+    tested_in: Option<&Batch>,
+) -> String {
     let language = paper.language;
     let title = language.text("paper-test_certificate");
     let title = match part.verdict.as_str() {
@@ -29,6 +35,7 @@ pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
         @for reason in &part.reason_codes { p { (words::reason(language, reason)) } }
         (results(language, part))
         p.note { (language.text("paper-uncertainty_note")) }
+        @if let Some(it) = tested_in { (batch::of_part(paper, it, part.seq)) }
         p.remark { (language.text("paper-not_tested")) }
         (sign_off(language))
     };

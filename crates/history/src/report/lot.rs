@@ -1,11 +1,11 @@
 //! Printable report of a lot: counts, reasons, capability, use of time, alarms, answers to prompts, rejects.
 
-use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{figure, parameter, percent, short_hash, span, unbroken};
 use super::{Paper, alarms, pareto};
+use super::{batch, charts};
 use crate::inquiry::pareto::Rejects;
-use crate::{Alarm, LotSummary, LotYield, PromptAnswer, Reopening};
+use crate::{Alarm, Batch, LotSummary, LotYield, PromptAnswer, Reopening};
 use maud::{Markup, PreEscaped, html};
 use quality::capability::{Index, by_percentiles};
 use quality::effectiveness::Effectiveness;
@@ -27,6 +27,8 @@ pub struct LotReport<'a> {
     pub parameters: Vec<ParameterValues>,
     /// Use of the time; `None` for an import.
     pub effectiveness: Option<Effectiveness>,
+    /// Batches with the curves of their chamber; none on a rig that tests part by part.
+    pub batches: &'a [Batch],
     /// Rejects with their reasons.
     pub rejects: Rejects,
     /// Alarms in order of time.
@@ -63,6 +65,7 @@ impl LotReport<'_> {
             p.note { (language.text("paper-capability_note")) }
             (self.histograms(language))
             @if let Some(it) = &self.effectiveness { (use_of_time(language, it)) }
+            @if !self.batches.is_empty() { (batch::all(paper, self.batches)) }
             h2 { (language.text("paper-alarms")) }
             (alarms::ranked(language, self.alarms))
             (alarms::table(paper, self.alarms))

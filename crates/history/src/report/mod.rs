@@ -15,6 +15,7 @@
 //! inline SVG. Pages are Chinese or English ([`words`]); texts typed by people are escaped.
 
 pub mod alarms;
+mod batch;
 pub mod card;
 pub mod certificate;
 mod charts;

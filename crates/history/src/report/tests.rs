@@ -10,8 +10,8 @@ use super::*;
 use crate::inquiry::comparison::{ComparedLot, Comparison};
 use crate::inquiry::pareto::{Ranked, Rejects};
 use crate::{
-    Alarm, AlarmState, LotSummary, LotYield, Measurement, Part, PromptAnswer, Reopening, Shelf,
-    Yield,
+    Alarm, AlarmState, Batch, BatchAir, BatchSocket, LotSummary, LotYield, Measurement, Part,
+    PromptAnswer, Reopening, Shelf, Yield,
 };
 use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
@@ -131,6 +131,7 @@ fn lot_report_on(paper: &Paper) -> String {
         },
         parameters: vec![values],
         effectiveness: None,
+        batches: &[some_batch()],
         rejects: some_rejects(),
         alarms: &alarms,
         answers: &[PromptAnswer {
@@ -142,6 +143,48 @@ fn lot_report_on(paper: &Paper) -> String {
         }],
     };
     report.html(paper)
+}
+
+/// A batch of two sockets: part 7 switches twice, part 8 once.
+fn some_batch() -> Batch {
+    let socket = |socket, seq, opened_s: &[f64], closed_s: &[f64]| BatchSocket {
+        socket,
+        seq: Some(seq),
+        opened_s: opened_s.into(),
+        closed_s: closed_s.into(),
+    };
+    Batch {
+        lot: EVIL.into(),
+        run: 1,
+        number: 2,
+        begin: Moment(0),
+        ended: Moment(120_000_000),
+        curve: BatchAir {
+            t_s: vec![0.0, 60.0, 120.0],
+            set_c: vec![None, Some(60.0), Some(80.0)],
+            reference_c: vec![Some(40.0), Some(59.5), Some(79.5)],
+            rate_k_per_min: vec![None, Some(19.5), Some(20.0)],
+        },
+        switched: vec![socket(1, 7, &[61.0], &[119.0]), socket(2, 8, &[100.0], &[])],
+    }
+}
+
+#[test]
+fn papers_of_a_batch_draw_its_curve_and_switchings() {
+    let marks = |page: &str| page.matches("stroke=\"#a11212\"/>").count();
+    for language in LANGUAGES {
+        let own = Part {
+            seq: 7,
+            ..part("pass")
+        };
+        let bare = certificate(&paper(language), &own, &run(), None);
+        let page = certificate(&paper(language), &own, &run(), Some(&some_batch()));
+        assert_eq!(marks(&page), marks(&bare) + 2);
+        assert!(page.contains("20 min") == bare.contains("20 min") && page.contains("K/min"));
+        let words = language.text("paper-batch_note");
+        assert!(page.contains(words) && lot_report(language).contains(words));
+        assert!(!bare.contains(words));
+    }
 }
 
 fn some_rejects() -> Rejects {
@@ -221,7 +264,7 @@ fn typed_text_stays_text_on_every_page() {
         let paper = paper(language);
         for page in [
             lot_report(language),
-            certificate(&paper, &part("pass"), &run()),
+            certificate(&paper, &part("pass"), &run(), None),
             spc(&paper, EVIL, std::slice::from_ref(&named), 3),
         ] {
             assert!(page.contains("&lt;script&gt;") && !page.contains("<script"));
@@ -237,7 +280,7 @@ fn every_page_of_a_good_part_names_untested_properties() {
     ] {
         let pages = [
             lot_report(language),
-            certificate(&paper(language), &part("pass"), &run()),
+            certificate(&paper(language), &part("pass"), &run(), None),
             process_card(language),
         ];
         for page in pages {
@@ -248,9 +291,9 @@ fn every_page_of_a_good_part_names_untested_properties() {
 
 #[test]
 fn a_failed_part_gets_a_record_not_a_certificate() {
-    let good = certificate(&paper(Lang::En), &part("pass"), &run());
+    let good = certificate(&paper(Lang::En), &part("pass"), &run(), None);
     assert!(good.contains("<h1>Test certificate</h1>"));
-    let bad = certificate(&paper(Lang::En), &part("fail"), &run());
+    let bad = certificate(&paper(Lang::En), &part("fail"), &run(), None);
     assert!(bad.contains("<h1>Test record</h1>") && !bad.contains("certificate"));
 }
 
@@ -265,7 +308,7 @@ fn a_record_gives_reasons_in_its_language() {
         ),
         (Lang::Zh, ["动作电压 / V：超出上限", "线圈开路"]),
     ] {
-        let page = certificate(&paper(language), &failed, &run());
+        let page = certificate(&paper(language), &failed, &run(), None);
         assert!(words.iter().all(|it| page.contains(it)), "{page}");
     }
 }
@@ -287,7 +330,7 @@ fn a_bin_chart_names_bin_and_omitted_points() {
 
 #[test]
 fn a_certificate_rounds_the_last_attempt_by_its_uncertainty() {
-    let page = certificate(&paper(Lang::En), &part("pass"), &run());
+    let page = certificate(&paper(Lang::En), &part("pass"), &run(), None);
     assert!(
         page.contains(">7.704<") && page.contains(">0.011<"),
         "{page}"
@@ -317,7 +360,7 @@ fn paper_of_simulated_parts_says_simulation_across_it() {
             };
             for page in [
                 lot_report_on(&paper),
-                certificate(&paper, &part("pass"), &run()),
+                certificate(&paper, &part("pass"), &run(), None),
                 spc(&paper, "", &named, 3),
                 alarms::list(&paper, "", &[]),
             ] {

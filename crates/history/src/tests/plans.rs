@@ -1,7 +1,7 @@
 //! Tests of query plans: each query that may run on many rows must find them by an index.
 
 use super::super::source::Dialect;
-use super::super::{curve, details, lots, reasons, retention, series, values};
+use super::super::{batches, curve, details, lots, reasons, retention, series, values};
 use super::reading::operate;
 use super::*;
 
@@ -202,6 +202,7 @@ fn rows_of_a_part_are_found_by_key() {
     let by_hand = file.by_hand();
     let fixed = [
         curve::CURVES,
+        batches::SIGNALS,
         lots::YIELD,
         lots::COUNTS,
         values::LIMITS,

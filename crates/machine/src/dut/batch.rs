@@ -1,6 +1,6 @@
 //! The test of a batch: a kind of device tests the parts of all sockets together.
 
-use super::batch_shown::BatchShown;
+use super::batch_shown::{AirCurve, BatchShown, SocketSwitched};
 use super::characteristic::Characteristic;
 use super::experiment::Found;
 use super::record::TestRecord;
@@ -91,6 +91,17 @@ pub struct BatchOutcome {
     pub found: Option<Found>,
 }
 
+/// What a test has recorded of air and contacts, for the history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BatchCurve {
+    /// Time zero of the curve.
+    pub origin: RigTime,
+    /// The air.
+    pub air: AirCurve,
+    /// Sockets of the batch, by number.
+    pub switched: Vec<SocketSwitched>,
+}
+
 /// Progress of the test of a batch after a step.
 #[derive(Debug)]
 pub enum BatchProgress {
@@ -114,4 +125,7 @@ pub trait BatchTest: Debug + Send {
 
     /// Returns what pages show of the test.
     fn shown(&self) -> BatchShown;
+
+    /// Returns what the history keeps of air and contacts; `None` for a test without parts, and before the first reading.
+    fn curve(&self) -> Option<BatchCurve>;
 }

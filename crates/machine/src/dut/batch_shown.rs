@@ -5,13 +5,15 @@ use utoipa::ToSchema;
 
 /// Seconds between two points of a new curve.
 const STEP_S: u32 = 5;
-/// Points above which a curve keeps every second one: a view holds the whole curve.
+/// Points above which a curve for a view keeps every second one: a view holds the whole curve.
 const MOST_POINTS: usize = 300;
+/// The same for the curve that the history keeps: 4 hours at the first step.
+const MOST_KEPT: usize = 2_880;
 /// Switchings that a socket shows, the last ones: an intermittent contact has thousands.
 const MOST_SWITCHED: usize = 12;
 
 /// Temperature of the air during the test of a batch; the members have equal lengths.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct AirCurve {
     /// Time since the first reading, s.
     pub t_s: Vec<u32>,
@@ -19,9 +21,28 @@ pub struct AirCurve {
     pub set_c: Vec<Option<f64>>,
     /// Reference thermometer, C.
     pub reference_c: Vec<f64>,
-    /// Seconds between two points; 0 for the first step.
+    /// Slope of the reference thermometer over a minute, K/min; null in the first minute. Views have the present one only.
+    #[serde(skip)]
+    pub rate_k_per_min: Vec<Option<f64>>,
+    /// Seconds between two points.
     #[serde(skip)]
     step_s: u32,
+    /// Number of points above which the curve drops every second one.
+    #[serde(skip)]
+    most: usize,
+}
+
+/// The air in one second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AirSecond {
+    /// Time since the first reading, s.
+    pub t_s: u32,
+    /// Set point, C; `None` before the passes.
+    pub set_c: Option<f64>,
+    /// Reference thermometer, C.
+    pub reference_c: f64,
+    /// Slope of the reference thermometer over a minute, K/min; `None` in the first minute.
+    pub rate_k_per_min: Option<f64>,
 }
 
 /// Switchings of the contact of a socket.
@@ -58,18 +79,40 @@ pub struct BatchShown {
     pub switched: Vec<SocketSwitched>,
 }
 
+impl Default for AirCurve {
+    /// Makes an empty curve for a view.
+    fn default() -> Self {
+        Self {
+            t_s: Vec::new(),
+            set_c: Vec::new(),
+            reference_c: Vec::new(),
+            rate_k_per_min: Vec::new(),
+            step_s: STEP_S,
+            most: MOST_POINTS,
+        }
+    }
+}
+
 impl AirCurve {
-    /// Takes the temperatures of a second, C, and keeps those that the present step wants.
-    pub fn push(&mut self, t_s: u32, set_c: Option<f64>, reference_c: f64) {
-        let step_s = self.step_s.max(STEP_S);
-        if self.t_s.last().is_some_and(|last| t_s < last + step_s) {
+    /// Makes an empty curve for the history, which has more points.
+    pub fn kept() -> Self {
+        Self {
+            most: MOST_KEPT,
+            ..Self::default()
+        }
+    }
+
+    /// Takes a second, and keeps it when the present step wants it.
+    pub fn push(&mut self, now: &AirSecond) {
+        let next = self.t_s.last().map(|last| last + self.step_s);
+        if next.is_some_and(|next| now.t_s < next) {
             return;
         }
-        self.t_s.push(t_s);
-        self.set_c.push(set_c.map(hundredths));
-        self.reference_c.push(hundredths(reference_c));
-        self.step_s = step_s;
-        if self.t_s.len() > MOST_POINTS {
+        self.t_s.push(now.t_s);
+        self.set_c.push(now.set_c.map(hundredths));
+        self.reference_c.push(hundredths(now.reference_c));
+        self.rate_k_per_min.push(now.rate_k_per_min.map(hundredths));
+        if self.t_s.len() > self.most {
             self.thin();
         }
     }
@@ -80,6 +123,7 @@ impl AirCurve {
         every_second(&mut self.t_s);
         every_second(&mut self.set_c);
         every_second(&mut self.reference_c);
+        every_second(&mut self.rate_k_per_min);
     }
 }
 
@@ -125,7 +169,12 @@ mod tests {
     fn a_curve_of_hours_keeps_few_points_evenly() {
         let mut curve = AirCurve::default();
         for t_s in 0..20_000 {
-            curve.push(t_s, (t_s > 900).then_some(40.0), f64::from(t_s) / 200.0);
+            curve.push(&AirSecond {
+                t_s,
+                set_c: (t_s > 900).then_some(40.0),
+                reference_c: f64::from(t_s) / 200.0,
+                rate_k_per_min: None,
+            });
         }
         let gaps = curve.t_s.windows(2).map(|it| it[1] - it[0]);
         assert!(

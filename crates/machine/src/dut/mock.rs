@@ -1,7 +1,7 @@
 //! A kind of device for tests of batches: it heats nothing, reads the rack once a second, and judges by the socket.
 
 use super::batch::{
-    BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, SocketResult,
+    BatchCurve, BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, SocketResult,
 };
 use super::batch_shown::BatchShown;
 use super::device::{DeviceUnderTest, TestOrder};
@@ -103,5 +103,9 @@ impl BatchTest for MockTest {
 
     fn shown(&self) -> BatchShown {
         BatchShown::default()
+    }
+
+    fn curve(&self) -> Option<BatchCurve> {
+        None
     }
 }

@@ -3,6 +3,7 @@
 use super::ledger::Part;
 use super::moves::Move;
 use super::place::NestId;
+use crate::dut::batch::BatchCurve;
 use crate::dut::experiment::Found;
 use crate::dut::{Characteristic, Judgement, Reason, TestRecord, Verdict};
 use crate::instrument::act::{Job, JobDone};
@@ -74,6 +75,21 @@ pub struct PartEvents {
     pub landed: Vec<Landed>,
     /// What an experiment without parts has found in this turn.
     pub found: Option<Found>,
+    /// Batch whose test has ended, with its curve.
+    pub batch: Option<Box<EndedBatch>>,
+}
+
+/// A batch whose test has ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EndedBatch {
+    /// Number of the batch in its run, from 1.
+    pub number: u64,
+    /// What the test has recorded.
+    pub curve: BatchCurve,
+    /// Time at which the test ended.
+    pub ended: RigTime,
+    /// Sockets with the numbers of their parts.
+    pub parts: Vec<(u16, u64)>,
 }
 
 /// A judged part on its way to the history.

@@ -12,6 +12,7 @@
 //! | `settled_s` | time from the end of the ramp at 5 K/min until the error stays within 0.2 K |
 //! | `weak`, `weak_over` | error and excess with half of the heater power, at 5 K/min, K |
 //! | `strong_sd` | standard deviation of a hold with one and a half times the heater power, K |
+//! | `seed` | drawn chamber of the value |
 //! | `door_s`, `door_over` | recovery to 0.5 K after 20 s of open door, and excess, K; the controller has no door switch |
 
 pub mod contender;
@@ -165,6 +166,15 @@ fn learnt(chamber: &Identified) -> Vec<Figure> {
     [WEAK, STRONG].map(one).into()
 }
 
+/// Returns the figures of the default controller, each with its bar.
+///
+/// # Errors
+/// Fails when the identification run gives no figures.
+pub fn default_figures() -> anyhow::Result<Vec<Figure>> {
+    let air = Plant::nominal(Medium::Air, 1).identify(Medium::Air)?;
+    Ok(bars(&[row(Contender::named(DEFAULT), &air)], &air))
+}
+
 /// Returns the figures of the default controller on the nominal chamber, each with its bar.
 fn bars(rows: &[Row], chamber: &Identified) -> Vec<Figure> {
     let mut figures = Vec::new();
@@ -205,6 +215,7 @@ fn spread() -> anyhow::Result<Vec<Figure>> {
     })?;
     let figure = |name: String, values: Vec<f64>, unit, bar| {
         let ordered = Ordered::of(&values);
+        let worst = (1..).zip(&values).max_by(|a, b| a.1.total_cmp(b.1));
         Figure::new(
             format!("{name}, drawn chambers"),
             CHAMBERS,
@@ -212,6 +223,7 @@ fn spread() -> anyhow::Result<Vec<Figure>> {
             unit,
         )
         .with("median", ordered.quantile(0.5))
+        .with("seed", worst.map(|(seed, _)| f64::from(seed)))
         .bar(Bar::AtMost(bar))
     };
     let mut figures = Vec::new();

@@ -38,7 +38,7 @@ pub fn reactions(entries: &[Entry], moving: &BTreeMap<String, u16>) -> Vec<Optio
                     });
                 }
             }
-            Entry::Struck { .. } | Entry::Expired {} => {}
+            Entry::Struck { .. } | Entry::Other => {}
         }
     }
     reactions

@@ -70,6 +70,7 @@ impl Watch {
                     ..
                 } => expired.push((t_us - last_request_us, carries)),
                 Entry::Output { .. }
+                | Entry::Level { .. }
                 | Entry::Struck { .. }
                 | Entry::Late { .. }
                 | Entry::CoilOverdriven(_)

@@ -58,9 +58,9 @@ impl Rack {
         let (number, seed) = (batch.number, lot.seed);
         let mut draw = Draw::new(seed, Subject::LotPart, number);
         let mut map = Draw::new(seed, Subject::Rig, 2);
-        let mut part = || {
+        let part = |place: usize| {
             let operate_c = draw.normal(OPERATE[0], OPERATE[1]);
-            let lag = lot.lag * draw.normal(1.0, LAG_SPREAD).max(0.3);
+            let lag = lot.lag[place % 2] * draw.normal(1.0, LAG_SPREAD).max(0.3);
             Part {
                 operate_c,
                 reset_c: operate_c - draw.normal(DIFFERENTIAL[0], DIFFERENTIAL[1]),
@@ -73,7 +73,7 @@ impl Rack {
             }
         };
         Self {
-            parts: (0..batch.sockets).map(|_| part()).collect(),
+            parts: (0..batch.sockets).map(part).collect(),
             delay: Delay::new(AIR_DELAY_S, air_c),
             ambient_c,
             now_s: 0.0,
@@ -135,8 +135,8 @@ impl Part {
 pub struct Lot {
     /// Kind of part.
     pub kind: Kind,
-    /// Ratio of the lag to that of the default world.
-    pub lag: f64,
+    /// Ratio of the lag to that of the default world, in every other socket.
+    pub lag: [f64; 2],
     /// Scatter of a switching from cycle to cycle, K.
     pub scatter_k: f64,
     /// Seed of rig and lot.

@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use super::rig::{Known, Rig};
-use super::score::{Miss, coverage_pct, mean_k, misses, rms_k};
+use super::score::{Miss, Quantity, coverage_pct, mean_k, misses, rms_k};
+use super::world::Kind;
 use super::*;
 
 fn rig(kind: Kind) -> Rig {

@@ -32,8 +32,8 @@ impl Kind {
 pub struct World {
     /// Name in reports.
     pub name: &'static str,
-    /// Ratio of the lag of the parts to that in the default world.
-    pub lag: f64,
+    /// Ratio of the lag of the parts to that in the default world, in every other socket.
+    pub lag: [f64; 2],
     /// Scatter of a switching from cycle to cycle, one standard deviation, K.
     pub scatter_k: f64,
     /// Ratio of the power of the heater to the nominal one.
@@ -52,7 +52,7 @@ pub const SCATTER_K: f64 = 0.15;
 /// The default world.
 pub const DEFAULT: World = World {
     name: "default world",
-    lag: 1.0,
+    lag: [1.0; 2],
     scatter_k: SCATTER_K,
     mains: 1.0,
     mains_later: 1.0,
@@ -61,15 +61,20 @@ pub const DEFAULT: World = World {
 };
 
 /// Other worlds in which results must stay within their uncertainty.
-pub const OTHERS: [World; 9] = [
+pub const OTHERS: [World; 10] = [
     World {
         name: "lag x0.5",
-        lag: 0.5,
+        lag: [0.5; 2],
         ..DEFAULT
     },
     World {
         name: "lag x2",
-        lag: 2.0,
+        lag: [2.0; 2],
+        ..DEFAULT
+    },
+    World {
+        name: "lag x0.5 and x2 mixed",
+        lag: [0.5, 2.0],
         ..DEFAULT
     },
     World {

@@ -12,12 +12,16 @@ use crate::rig::fault::Fault;
 use crate::rig::wiring::Wiring;
 use chamber::budget::Calibrations;
 use chamber::program::{MARGIN_K, Window};
+use chamber::tune::Identified;
 
 /// Least distance between the end of a window and the end of the range of a thermometer, K.
 const RESERVE_K: f64 = 5.0;
 
 /// Temperature of a room, C.
 const ROOM_C: f64 = 23.0;
+
+/// Share of the heater that a ramp may use: the controller needs the rest, and the mains may be low.
+const MOST_POWER: f64 = 0.85;
 
 /// Returns every reason why the rig cannot perform the recipe.
 pub fn faults(recipe: &ThermostatRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
@@ -40,6 +44,7 @@ pub fn faults(recipe: &ThermostatRecipe, limits: &Limits, rig: &Rig) -> Vec<Faul
     found.extend(claimed(recipe, limits, &least));
     found.extend(out_of_range(recipe, &windows, &points, rig.wiring));
     found.extend(rates(recipe));
+    found.extend(too_fast(recipe, &windows, rig));
     found
 }
 
@@ -208,4 +213,30 @@ fn rates(recipe: &ThermostatRecipe) -> Vec<Fault> {
         Fault::new("test.learning_k_per_min", test.learning_k_per_min, expected)
     });
     room.into_iter().chain(slow).collect()
+}
+
+/// Returns the fault of a rate that the heater cannot keep up to the end of the operate window, by the response that the
+/// certificate of the rack states. Without one, the batch itself finds out (`ramp_not_reached`).
+fn too_fast(recipe: &ThermostatRecipe, windows: &[Window; 2], rig: &Rig) -> Option<Fault> {
+    let chamber = rig.certificate?.chamber.as_ref()?.identified();
+    let [operate, _] = windows;
+    let most = fastest(&chamber, operate.high_c);
+    let test = &recipe.test;
+    let rates = [
+        ("test.learning_k_per_min", test.learning_k_per_min),
+        ("test.rate_k_per_min", test.rate_k_per_min),
+    ];
+    let (key, found) = rates.into_iter().find(|(_, rate)| *rate > most)?;
+    let expected = format!(
+        "at most {most:.1} K/min: at {:.0} C the heater of this chamber makes no faster ramp with {:.0} % of its power",
+        operate.high_c,
+        100.0 * MOST_POWER
+    );
+    Some(Fault::new(key, found, expected))
+}
+
+/// Returns the fastest steady ramp of a chamber at a temperature, K/min.
+fn fastest(chamber: &Identified, celsius: f64) -> f64 {
+    let holds = chamber.loss_per_k * (celsius - ROOM_C) - chamber.fan;
+    60.0 * chamber.slope_k_per_s * (MOST_POWER - holds).max(0.0)
 }

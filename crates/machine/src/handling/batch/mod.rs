@@ -24,6 +24,7 @@
 //! [`crate::dut::device::DeviceUnderTest::cooling`]. The station has the reactions to an open door and the emergency
 //! stop.
 
+mod ended;
 mod loading;
 mod rack_watch;
 mod testing;
@@ -38,7 +39,7 @@ use super::place::{NestId, Place};
 use super::serial::Serials;
 use super::trouble::Trouble;
 use crate::dut::Device;
-use crate::dut::batch::{BatchOrder, BatchTest};
+use crate::dut::batch::{BatchCurve, BatchOrder, BatchTest};
 use crate::dut::batch_shown::BatchShown;
 use crate::dut::experiment::Experiment;
 use crate::dut::prompt::Prompt;
@@ -115,6 +116,8 @@ pub struct Batch {
     announced: Option<Prompt>,
     /// What pages show of the last test that has ended; `None` before it.
     last: Option<BatchShown>,
+    /// Curve of a test that has ended, and when, until the next step hands it over.
+    ended: Option<(BatchCurve, RigTime)>,
 }
 
 /// Everything that the batch sees and changes in one turn.
@@ -199,6 +202,7 @@ impl Batch {
             done: None,
             announced: None,
             last: None,
+            ended: None,
         }
     }
 
@@ -289,6 +293,7 @@ impl Batch {
         self.watch = match &self.phase {
             Phase::Testing { test, .. } => {
                 self.last = Some(test.shown());
+                self.ended = test.curve().map(|it| (it, now));
                 RackWatch::new(&self.rack)
             }
             Phase::Loading(_)
@@ -337,7 +342,10 @@ impl Batch {
             Phase::Testing { since, test } => {
                 let since = *since;
                 let next = testing::advance(turn, since, test.as_mut(), done.as_ref());
-                self.last = next.as_ref().map(|_| test.shown()).or(self.last.take());
+                if next.is_some() {
+                    self.last = Some(test.shown());
+                    self.ended = test.curve().map(|it| (it, turn.now));
+                }
                 next
             }
             Phase::Loading(_)
@@ -348,6 +356,7 @@ impl Batch {
                 self.at_rest(turn, idle)
             }
         };
+        self.hand_over(turn);
         if let Some(next) = next {
             self.enter(next, turn);
         }

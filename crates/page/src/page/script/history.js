@@ -92,6 +92,7 @@ async function readPart() {
     const [part] = await (await ask("api/history/show" + query(which))).json();
     if (!isNewest()) return;
     showPart(part);
+    await readBatch(part, isNewest);
     at("part_trouble").textContent = "";
   } catch (error) {
     if (isNewest()) at("part_trouble").textContent = error.message;
@@ -140,6 +141,20 @@ function showPart(part) {
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
     row(nameOf(it.parameter), wordOr("line-" + sample.line, sample.line), wordOr("module-" + sample.module, sample.module), sample.channel,
       sample.command, sample.raw, clock(sample.at).slice(11) + sample.at.slice(19, -1)))));
+}
+
+// Draws the batch in which the part was judged, with the switchings of its own contact; hides the drawing without one.
+async function readBatch(part, isNewest) {
+  const batches = await (await ask("/api/history/batches" + query({lot: part.lot, run: part.run}))).json();
+  if (!isNewest()) return;
+  const judged = seconds(part.time);
+  const batch = batches.find((it) => seconds(it.begin) <= judged && judged <= seconds(it.ended));
+  at("part_batch").hidden = !batch;
+  if (!batch) return;
+  at("part_batch_number").textContent = batch.number;
+  const own = {...batch, switched: batch.switched.filter((it) => it.seq === part.seq)};
+  const box = at("part_air");
+  box.replaceChildren(airDrawing(own, box.clientWidth || AIR.wide, box.clientHeight || AIR.high));
 }
 
 PAGES.part = {enter: readPart};

@@ -23,7 +23,7 @@ mod windows;
 use super::device::Device;
 use super::{Finding, duration};
 use crate::dut::batch::{
-    BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, HeatTrouble,
+    BatchCurve, BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, HeatTrouble,
 };
 use crate::dut::batch_shown::{BatchShown, SocketSwitched};
 use crate::dut::experiment::Experiment;
@@ -266,6 +266,27 @@ impl Test {
         }
     }
 
+    /// Returns the heated part of the test, under way or over.
+    fn seconds(&self) -> Option<&Seconds> {
+        match &self.state {
+            State::Seconds(seconds) => Some(seconds),
+            State::Cold(_) | State::Drops(..) | State::Off(..) => self.ran.as_ref(),
+        }
+    }
+
+    fn switched(&self) -> Vec<SocketSwitched> {
+        let Some(seconds) = self.seconds() else {
+            return Vec::new();
+        };
+        let sockets = self.sockets.iter().zip(&self.contacts);
+        let one = |(socket, contact): (&Socket, &Contact)| {
+            let Switching { operate, reset } = contact.events(seconds.origin).switching;
+            let times = |all: Vec<Transition>| all.into_iter().map(|it| it.first_s);
+            SocketSwitched::new(socket.number, times(operate), times(reset))
+        };
+        sockets.map(one).collect()
+    }
+
     /// Returns the trouble of contacts that were open before heating.
     fn open_sockets(&self) -> Vec<BatchTrouble> {
         let all = self.sockets.iter().zip(&self.contacts);
@@ -317,22 +338,20 @@ impl BatchTest for Test {
     }
 
     fn shown(&self) -> BatchShown {
-        let seconds = match &self.state {
-            State::Seconds(seconds) => Some(seconds),
-            State::Cold(_) | State::Drops(..) | State::Off(..) => self.ran.as_ref(),
-        };
-        let Some(seconds) = seconds else {
-            return BatchShown::default();
-        };
-        let sockets = self.sockets.iter().zip(&self.contacts);
-        let switched = sockets.map(|(socket, contact)| {
-            let Switching { operate, reset } = contact.events(seconds.origin).switching;
-            let times = |all: Vec<Transition>| all.into_iter().map(|it| it.first_s);
-            SocketSwitched::new(socket.number, times(operate), times(reset))
-        });
+        let seconds = self.seconds();
         BatchShown {
-            switched: switched.collect(),
-            ..seconds.shown()
+            switched: self.switched(),
+            ..seconds.map(Seconds::shown).unwrap_or_default()
         }
+    }
+
+    fn curve(&self) -> Option<BatchCurve> {
+        let seconds = self.seconds().filter(|_| self.experiment.is_none())?;
+        seconds.last.as_ref()?;
+        Some(BatchCurve {
+            origin: seconds.origin,
+            air: seconds.kept.clone(),
+            switched: self.switched(),
+        })
     }
 }

@@ -9,7 +9,7 @@ use super::drop;
 use super::passes::{Seen, Work};
 use super::repeat::Shown;
 use crate::dut::batch::HeatTrouble;
-use crate::dut::batch_shown::{AirCurve, BatchShown};
+use crate::dut::batch_shown::{AirCurve, AirSecond, BatchShown};
 use crate::dut::experiment::Experiment;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
 use crate::rig::image::Image;
@@ -83,8 +83,9 @@ pub struct Seconds {
     pub pulses: Vec<(usize, Pulse)>,
     /// Place of the contact that gets the next pulse.
     next: usize,
-    /// The air, as pages show it.
+    /// The air, as pages show it and as the history keeps it.
     curve: AirCurve,
+    pub kept: AirCurve,
     /// Slope of the reference thermometer over a minute.
     slope: SlidingSlope,
     rate_k_per_min: Option<f64>,
@@ -111,6 +112,7 @@ impl Seconds {
             pulses: Vec::new(),
             next: 0,
             curve: AirCurve::default(),
+            kept: AirCurve::kept(),
             slope: SlidingSlope::default(),
             rate_k_per_min: None,
             tick: now,
@@ -246,12 +248,17 @@ impl Seconds {
         Ok(next)
     }
 
-    /// Adds a second to the curve that pages show.
+    /// Adds a second to both curves.
     fn draw(&mut self, reference_c: f64) {
-        let second = u32::try_from(self.record.seconds()).unwrap_or(u32::MAX) - 1;
-        let set_c = self.work.as_ref().and_then(Work::set_c);
-        self.curve.push(second, set_c, reference_c);
         self.rate_k_per_min = self.slope.step(reference_c);
+        let now = AirSecond {
+            t_s: u32::try_from(self.record.seconds()).unwrap_or(u32::MAX) - 1,
+            set_c: self.work.as_ref().and_then(Work::set_c),
+            reference_c,
+            rate_k_per_min: self.rate_k_per_min,
+        };
+        self.curve.push(&now);
+        self.kept.push(&now);
     }
 
     /// Returns what pages show of this part of the test.

@@ -1,0 +1,198 @@
+//! Every fault of the chamber at random instants: how long the heater stays on, and what becomes of the parts.
+//!
+//! The command of the heater is on while its analog output carries a voltage and the main contactor is closed. A fault
+//! counts only when the command was on at its instant or came on later; parts that were judged before do not count.
+
+use super::program::{Lot, Ran, run};
+use crate::dice::Dice;
+use crate::figure::{Bar, Figure};
+use crate::pool::{self, LOTS_AT_ONCE};
+use crate::storm::life::{EPOCH_US, End};
+use app::exit::Exit;
+use rigsim::journal::Entry;
+
+/// Recipe and number of parts.
+const RECIPE: &str = "thermostat-ksd9700";
+const PARTS: u64 = 6;
+/// Instants between which a fault strikes, s: from the first heat of the identification to the last descent.
+const INSTANTS_S: [u64; 2] = [420, 3_000];
+/// Module and channel of the heater; module and bit of the contactor.
+const HEATER: (&str, u8) = ("power_ao", 0);
+const CONTACTOR: (&str, u16) = ("relay_do", 1);
+/// Longest time of the heater after a fault that a sensor or the chain shows, and after one that only temperatures show, s.
+const SHOWN_S: f64 = 2.0;
+const HIDDEN_S: f64 = 60.0;
+
+/// What must follow a fault.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Must {
+    /// The heater is off within this time, s, and no part is judged.
+    Stop(f64),
+    /// The heater is off in the end, or results stay right: the controller makes up for the fault.
+    StopOrStayRight,
+}
+
+/// Faults with what must follow.
+const FAULTS: [(&str, Must); 22] = [
+    ("control_open", Must::Stop(SHOWN_S)),
+    ("control_short", Must::Stop(SHOWN_S)),
+    ("reference_open", Must::Stop(SHOWN_S)),
+    ("reference_short", Must::Stop(SHOWN_S)),
+    ("silence=rtd", Must::Stop(SHOWN_S)),
+    ("limiter", Must::Stop(SHOWN_S)),
+    ("door", Must::Stop(SHOWN_S)),
+    ("estop", Must::Stop(SHOWN_S)),
+    ("mains_off", Must::Stop(SHOWN_S)),
+    ("fan_stopped", Must::Stop(HIDDEN_S)),
+    ("heater_open", Must::Stop(HIDDEN_S)),
+    ("ssr_stuck", Must::Stop(HIDDEN_S)),
+    ("control_stuck", Must::StopOrStayRight),
+    ("reference_stuck", Must::StopOrStayRight),
+    ("control_drift", Must::StopOrStayRight),
+    ("reference_drift", Must::StopOrStayRight),
+    ("heater_half", Must::StopOrStayRight),
+    ("fan_slow", Must::StopOrStayRight),
+    ("vent_stuck", Must::StopOrStayRight),
+    ("mains_low", Must::StopOrStayRight),
+    ("thermocouple_open", Must::StopOrStayRight),
+    ("rack_open", Must::StopOrStayRight),
+];
+
+/// A fault at one instant.
+struct Struck {
+    /// Place of the fault in [`FAULTS`].
+    which: usize,
+    seed: u64,
+    at_s: u64,
+    ran: Ran,
+}
+
+impl Struck {
+    /// Returns the time after the fault at which the command of the heater was on last, s; `None` when it was never on.
+    fn heats_s(&self) -> Option<f64> {
+        let (mut level, mut closed, mut last_us) = (false, false, None);
+        let at_us = self.at_s * 1_000_000;
+        for entry in &self.ran.journal {
+            let (t_us, was_on) = match entry {
+                Entry::Level {
+                    t_us,
+                    module,
+                    channel,
+                    on,
+                } if (module.as_str(), *channel) == HEATER => {
+                    (*t_us, std::mem::replace(&mut level, *on) && closed)
+                }
+                Entry::Output { t_us, module, bits } if module == CONTACTOR.0 => (
+                    *t_us,
+                    std::mem::replace(&mut closed, bits & CONTACTOR.1 != 0) && level,
+                ),
+                Entry::Level { .. }
+                | Entry::Output { .. }
+                | Entry::Struck { .. }
+                | Entry::Expired { .. }
+                | Entry::Late { .. }
+                | Entry::CoilOverdriven(_)
+                | Entry::Contact(_) => continue,
+            };
+            if was_on && t_us > at_us {
+                last_us = Some(t_us);
+            }
+        }
+        last_us.map(|it| (it - at_us) as f64 / 1e6)
+    }
+
+    /// Returns true when an alarm has ended the lot.
+    fn is_seen(&self) -> bool {
+        self.ran.end != End::Exit(Exit::Done)
+    }
+
+    /// Counts parts judged after the fault: all, those with a verdict other than void, good ones that failed beyond U.
+    fn judged(&self) -> [u64; 3] {
+        let at_us = EPOCH_US + (self.at_s * 1_000_000) as i64;
+        let after = self.ran.parts.iter().filter(|it| it.time.0 > at_us);
+        after.fold([0; 3], |[all, judged, failed], part| {
+            let beyond =
+                part.verdict == "fail" && !part.reasons.iter().all(|it| it.ends_with("not proven"));
+            [
+                all + 1,
+                judged + u64::from(part.verdict != "void"),
+                failed + u64::from(beyond && self.ran.is_good(part)),
+            ]
+        })
+    }
+}
+
+/// Returns the figures of `instants` instants of each fault.
+///
+/// # Errors
+/// Fails when the rig cannot be built.
+pub fn figures(instants: u64) -> anyhow::Result<Vec<Figure>> {
+    let mut dice = Dice::new(25);
+    let mut all = Vec::new();
+    for which in 0..FAULTS.len() {
+        for seed in 1..=instants {
+            let [from, to] = INSTANTS_S;
+            all.push((which, seed, dice.between(from, to)));
+        }
+    }
+    let struck = pool::map(&all, LOTS_AT_ONCE, |(which, seed, at_s)| {
+        let ran = run(&lot(FAULTS[*which].0, *seed, *at_s))?;
+        Ok(Struck {
+            which: *which,
+            seed: *seed,
+            at_s: *at_s,
+            ran,
+        })
+    })?;
+    let of = |(which, (name, must)): (usize, &(&str, Must))| {
+        let own: Vec<&Struck> = struck.iter().filter(|it| it.which == which).collect();
+        of_fault(name, *must, &own)
+    };
+    let mut figures: Vec<Figure> = FAULTS.iter().enumerate().flat_map(of).collect();
+    let writes = struck.iter().map(|it| it.ran.eeprom_writes).sum();
+    figures.push(Figure::none("EEPROM writes", struck.len() as u64, writes));
+    Ok(figures)
+}
+
+fn lot(fault: &str, seed: u64, at_s: u64) -> Lot {
+    Lot {
+        recipe: RECIPE,
+        parts: PARTS,
+        seed,
+        faults: vec![match fault.contains('=') {
+            true => format!("{fault}@{at_s}"),
+            false => format!("{fault}={at_s}"),
+        }],
+        changes: Vec::new(),
+    }
+}
+
+/// Returns the figures of one fault: time of the heater, and parts with a wrong verdict.
+fn of_fault(name: &str, must: Must, all: &[&Struck]) -> [Figure; 2] {
+    let counts = all.iter().map(|it| it.judged());
+    let [parts, judged, failed] =
+        counts.fold([0; 3], |sum, it| std::array::from_fn(|at| sum[at] + it[at]));
+    let failed = Figure::none(format!("{name}, good parts failed"), parts, failed)
+        .with("judged", Some(judged as f64));
+    match must {
+        Must::Stop(within_s) => [
+            heated(name, all).bar(Bar::AtMost(within_s)),
+            Figure::none(format!("{name}, parts judged"), parts, judged),
+        ],
+        Must::StopOrStayRight => [heated(name, all), failed],
+    }
+}
+
+/// Returns the longest time of the heater after a fault, with the number of lots that an alarm ended, and the lot behind it.
+fn heated(name: &str, all: &[&Struck]) -> Figure {
+    let heats = all.iter().filter_map(|it| Some((it.heats_s()?, *it)));
+    let heats: Vec<(f64, &Struck)> = heats.collect();
+    let longest = heats.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    let heated_s = longest.map_or(0.0, |it| it.0);
+    let n = heats.len() as u64;
+    let seen = all.iter().filter(|it| it.is_seen()).count();
+    Figure::new(format!("{name}, heater on"), n, Some(heated_s), "s")
+        .with("alarms", Some(seen as f64))
+        .with("seed", longest.map(|it| it.1.seed as f64))
+        .with("at_s", longest.map(|it| it.1.at_s as f64))
+}
