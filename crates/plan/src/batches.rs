@@ -19,7 +19,7 @@ const MOST_STATES: usize = 4096;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FewChanges {
     pub(crate) order: Vec<Taken>,
-    /// True when no order has fewer changes; false when states had to be dropped.
+    /// True when no order has fewer changes; false when the search has dropped states and may have missed one.
     pub(crate) is_proven: bool,
 }
 

@@ -59,7 +59,7 @@ pub struct Problem {
     leaves: Vec<bool>,
     /// By unit: the number of its first way among the ways of all units.
     starts: Vec<u32>,
-    /// By unit: the ways, as unit and number of the way, that it blocks.
+    /// By unit: the ways that it blocks, each as a unit and the number of one of its ways.
     blocks: Vec<Vec<(u32, u32)>>,
 }
 

@@ -77,9 +77,9 @@ pub fn time(plan: &Plan, step_s: f64, control: &Crossing, output: &Crossing) -> 
 }
 
 /// Returns the budget of a resistance, milliohms, from the drops at half and at full current. The offsets of source and
-/// meter are the same at both and cancel. `heated_v` is the rise of the drop by heat during the measurement, V. The first
-/// reading is warmer than the part was, and the last one is warmer than its own current explains: one makes up for most of
-/// the other, and half of the rise is left where the time constant of the junction is 10 to 40 ms.
+/// meter are the same at both and cancel. `heated_v` is the rise of the drop by heat during the measurement, V. In the
+/// first reading the part is warmer than before the measurement, in the last one warmer than its current alone makes
+/// it. These two errors mostly cancel: half of the rise is left when the time constant of the junction is 10 to 40 ms.
 pub fn resistance(plan: &DcPlan, ohm: f64, heated_v: f64) -> Budget {
     let (source, meter) = (&plan.drop.source, &plan.drop.meter);
     let apart_a = plan.drop_a / 2.0;
@@ -101,7 +101,7 @@ pub fn drop_at_rated(plan: &DcPlan, resistance: &Budget) -> Budget {
     budget
 }
 
-/// Returns the budget of a rise of the drop, mV. Offsets cancel.
+/// Returns the budget, mV, of a rise of the drop by heat; the offset of the meter cancels between the two readings.
 pub fn drift(plan: &DcPlan, rise_v: f64) -> Budget {
     let meter = &plan.drop.meter;
     let noise_v = meter

@@ -25,9 +25,9 @@ pub const SCATTER_K: f64 = 0.15;
 /// Standard uncertainty of a lag that only the recipe states, as a share of it.
 const STATED_LAG: f64 = 0.3;
 
-/// Lag of a part over that of its lot from which the part is slow: beyond five times the spread of a lot.
+/// Ratio of the lag of a part to that of its lot above which the part is slow: beyond five times the spread of a lot.
 const SLOW: f64 = 2.0;
-/// Departure of the lag of a lot from the expected one, as a share, that is reported.
+/// Departure of the lag of a lot from the expected one, as a share of the latter, above which a batch reports it.
 const ODD_LAG: f64 = 0.4;
 
 /// What a batch has recorded.
@@ -48,9 +48,9 @@ pub struct Recorded<'a> {
     pub last: &'a Sample,
 }
 
-/// Returns lag and scatter of the lot, and true when passes have measured the lag. The lag comes from this batch, else
-/// from an earlier one, else from the recipe. At least half of the parts must show a lag: in a batch of a single pass,
-/// a defective part that switches twice shows none.
+/// Returns the lag of the lot, true when passes have measured that lag, and the scatter of a switching, K. The lag
+/// comes from this batch, else from an earlier one, else from the recipe, which no pass has measured. At least half of
+/// the parts must show a lag: in a batch of a single pass, a defective part that switches twice shows none.
 pub fn lot(device: &Device, record: &Record, events: &[Events]) -> (LotLag, bool, f64) {
     let all: Vec<Switching> = events.iter().map(|it| it.switching.clone()).collect();
     let test = &device.thermostat.test;
@@ -73,7 +73,8 @@ pub fn lot(device: &Device, record: &Record, events: &[Events]) -> (LotLag, bool
     (lag, known.is_some(), scatter_k)
 }
 
-/// Returns the trouble of a lag that is far from what was known before the batch.
+/// Returns the trouble of a batch whose measured lag departs by more than [`ODD_LAG`] from the lag of the batch before,
+/// or else from that of the recipe.
 pub fn unexpected_lag(device: &Device, recorded: &Recorded) -> Option<BatchTrouble> {
     let (found, is_told, _) = lot(device, recorded.record, &recorded.events);
     let lesson = device.lesson.as_ref().and_then(|it| it.lag);
@@ -84,7 +85,7 @@ pub fn unexpected_lag(device: &Device, recorded: &Recorded) -> Option<BatchTroub
     is_off.then(|| BatchTrouble::LagUnexpected(whole(found.seconds), whole(expected_s)))
 }
 
-/// Judges every part of a batch, and says what the batch has shown.
+/// Judges every part of a batch; each record keeps the [`Lesson`] of the batch.
 pub fn batch(
     device: &Device,
     order: &BatchOrder,

@@ -26,7 +26,7 @@ use units::{RigTime, Span, Volt};
 const SECOND: Span = Span::ms(1_000);
 /// Time after which the safety chain must be closed, s: the airflow switch needs it.
 const CHAIN_S: usize = 15;
-/// Greatest age of an input of the safety chain that counts.
+/// Greatest age at which an input of the safety chain still counts.
 const FRESH: Span = Span::ms(2_000);
 /// Range of room temperatures in which a chamber may stand, C.
 const ROOM_C: [f64; 2] = [5.0, 38.0];
@@ -65,7 +65,7 @@ pub struct Seconds {
     pub origin: RigTime,
     /// Readings of the reference thermometer.
     pub record: Record,
-    /// Its last reading.
+    /// Last reading of the reference thermometer.
     pub last: Option<Sample>,
     /// Temperature of the room, C.
     pub ambient_c: f64,
@@ -80,9 +80,9 @@ pub struct Seconds {
     pub pulses: Vec<(usize, Pulse)>,
     /// Place of the contact that gets the next pulse.
     next: usize,
-    /// The air, as pages show it.
+    /// Temperature of the air over time, as pages show it.
     curve: AirCurve,
-    /// Slope of the reference thermometer over a minute.
+    /// Slope of the reference temperature over the last minute.
     slope: SlidingSlope,
     rate_k_per_min: Option<f64>,
     tick: RigTime,

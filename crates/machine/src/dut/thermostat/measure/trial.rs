@@ -1,4 +1,4 @@
-//! An experiment without parts: the identification is over; the oscillation of a tuning follows.
+//! An experiment with the chamber after its identification: a tuning adds an oscillation. No part is tested.
 
 use super::super::Finding;
 use super::super::device::Device;
@@ -54,7 +54,8 @@ impl Trial {
         }
     }
 
-    /// Performs a second and returns the command; `None` when the experiment is over.
+    /// Performs one second of the experiment and returns the command for heater and vent; `None` when the experiment is
+    /// over. `control_c` is the temperature to control, C.
     ///
     /// # Errors
     /// Fails with the trouble of the chamber; the caller switches the heater off.

@@ -229,7 +229,8 @@ impl<'a> Drops<'a> {
         )
     }
 
-    /// Returns a value in each period from the begin of the current on; `of` gives it for the time between two instants.
+    /// Returns a value of each period from the begin of the current on; `of` computes the value between two instants,
+    /// s.
     fn periods(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<Vec<f64>> {
         let period_s = 1.0 / self.current.hz;
         let begins_s = self.begins_s()?;
@@ -243,8 +244,9 @@ impl<'a> Drops<'a> {
     }
 }
 
-/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V, from the drops of its periods:
-/// the first one, whose mean an output has after some 10 ms whatever its time constant, and the last two, around 200 ms.
+/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V; `peaks` holds the drop of each
+/// period. The first period stands for 10 ms: any output, fast or slow, reaches the mean of this period after some 10
+/// ms. The mean of the last two periods stands for 200 ms.
 fn drift_v(peaks: &[f64]) -> Option<f64> {
     let (first, last) = (peaks.first()?, peaks.last_chunk::<LATE>()?);
     Some(last.iter().sum::<f64>() / LATE as f64 - first)
