@@ -92,7 +92,7 @@ pub enum FleetError {
         "{target}: found a URL that cannot be read ({why}), expected postgres://USER@HOST:PORT/DATABASE"
     )]
     Url {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// What is wrong.
         why: String,
@@ -121,7 +121,7 @@ pub enum FleetError {
          tls = \"off\" in a network of your own"
     )]
     NoTls {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
     },
     /// The database did not answer in time.
@@ -129,7 +129,7 @@ pub enum FleetError {
         "{target}: no answer in {seconds} s while {doing}; check network and server. The rows stay in the queue"
     )]
     TimeOut {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// What the program was doing.
         doing: &'static str,
@@ -139,7 +139,7 @@ pub enum FleetError {
     /// The database said no, or the connection broke.
     #[error("{target}: {said} (while {doing}). {remedy}")]
     Database {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// What the program was doing.
         doing: &'static str,
@@ -155,7 +155,7 @@ pub enum FleetError {
         "{target}: found rigs of the plant {site}, expected a database without real rigs for made-up ones"
     )]
     RealRigs {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// A plant in it.
         site: String,
@@ -169,7 +169,7 @@ pub enum FleetError {
     /// No rig has this name.
     #[error("{target}: found no rig {found}, expected one of {expected}")]
     NoRig {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// Plant and rig asked for; `*` for any.
         found: String,
@@ -181,7 +181,7 @@ pub enum FleetError {
         "{target}: found no schema relayrig, expected one; run `relayrig fleet init` as its owner"
     )]
     NoSchema {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
     },
     /// A schema of this name belongs to another program.
@@ -189,7 +189,7 @@ pub enum FleetError {
         "{target}: the schema relayrig belongs to another program; name another database. It was left untouched"
     )]
     Foreign {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
     },
     /// The schema is older than this program needs.
@@ -197,7 +197,7 @@ pub enum FleetError {
         "{target}: found schema {found}, expected {expected} or later; run `relayrig fleet init` as its owner"
     )]
     SchemaOlder {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// Step found.
         found: i32,
@@ -207,7 +207,7 @@ pub enum FleetError {
     /// The database refuses this file.
     #[error("{target}: {refusal}")]
     Refused {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// Why.
         refusal: Refusal,

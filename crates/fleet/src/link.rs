@@ -20,7 +20,7 @@ const STEP: Duration = Duration::from_secs(60);
 pub struct Link {
     /// Client of the library.
     pub(crate) client: Client,
-    /// Database, as messages name it: without password.
+    /// URL of the database without password, as messages name it.
     pub(crate) target: String,
     /// Task that moves the bytes.
     carrier: JoinHandle<()>,

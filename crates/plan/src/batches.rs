@@ -9,10 +9,10 @@ use crate::problem::{Problem, Taken};
 use crate::remaining::Remaining;
 use std::collections::HashSet;
 
-/// Work that a level may cause, in rows of the dynamic table; bounds the states that are kept.
+/// Work that a level may cause, in rows of the dynamic table; bounds the states that the search keeps.
 const WORK_OF_A_LEVEL: usize = 400_000;
 
-/// Most states of a level.
+/// Most states that the search keeps on one level.
 const MOST_STATES: usize = 4096;
 
 /// An order with few changes of direction.

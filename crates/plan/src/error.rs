@@ -21,7 +21,7 @@ pub enum PlanError {
         /// The id.
         found: String,
     },
-    /// A body or its pose is refused by the collision core.
+    /// The collision core refuses a body or its pose.
     #[error("element {id:?}: {flaw}")]
     Flawed {
         /// Id of the element.

@@ -141,7 +141,8 @@ impl Signal {
         })
     }
 
-    /// Returns the standard deviation of samples of a level, at least that of the steps of the converter.
+    /// Returns the standard deviation of samples of a level, V; at least that of rounding to the steps of the
+    /// converter.
     fn noise_v(&self, range: Range<usize>) -> f64 {
         let level = &self.volts[range];
         let mean = level.iter().sum::<f64>() / level.len() as f64;
@@ -150,7 +151,8 @@ impl Signal {
         deviation.max(resolution(self.quantum_v()))
     }
 
-    /// Returns the smallest step between two values of the converter, V; at most what a converter of 8 bits has.
+    /// Returns the smallest difference of two samples, V: a step of the converter; at most that of a converter of 8
+    /// bits.
     fn quantum_v(&self) -> f64 {
         let values = sorted(&self.volts);
         let span_v = values[values.len() - 1] - values[0];

@@ -10,11 +10,11 @@
 //! | what the part is, how it is measured | [`recipe`] |
 //! | what the rig must have for it | [`feasible`] |
 //! | which points of the rig it needs | [`points`] |
-//! | what a test finds in addition to figures | [`finding`] |
+//! | why a part fails or stays unjudged, besides its figures | [`finding`] |
 //! | the keys of its recipe and of the certificate | [`keys`] |
 //! | calibration of thermometer chain and sockets | [`certificate`] |
 //! | response of the chamber, as a file states it | [`response`] |
-//! | what outlives a batch | [`device`] |
+//! | what a batch learns for the next one: chamber, lag of the lot | [`device`] |
 //! | the test of a batch | [`measure`] |
 //! | the process card | [`card`] |
 

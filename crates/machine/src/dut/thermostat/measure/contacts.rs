@@ -5,7 +5,7 @@ use crate::rig::point::DigitalInput;
 use chamber::lag::{Switching, Transition};
 use units::{RigTime, Span};
 
-/// Greatest age of a contact reading that counts.
+/// Greatest age at which a reading of a contact still counts.
 const FRESH: Span = Span::ms(2_000);
 /// Edges at most this far apart belong to one switching, s.
 const GAP_S: f64 = 1.0;
@@ -42,7 +42,7 @@ pub struct Events {
 }
 
 impl Contact {
-    /// Makes the contact of a socket that has not been polled.
+    /// Makes the contact of a socket, not yet polled.
     pub fn new(input: DigitalInput) -> Self {
         Self {
             input,
@@ -74,7 +74,7 @@ impl Contact {
         }
     }
 
-    /// Returns the state at the first poll; `None` before it.
+    /// Returns true when the contact was closed at the first poll; `None` before that poll.
     pub fn cold(&self) -> Option<bool> {
         self.cold
     }
@@ -98,7 +98,7 @@ impl Contact {
         settled && self.polled.is_some_and(|(_, closed)| !closed)
     }
 
-    /// Returns switchings and stray bursts of all edges.
+    /// Returns the switchings and stray bursts so far.
     pub fn events(&self) -> Events {
         events(self.cold.unwrap_or(true), &self.edges)
     }
@@ -130,12 +130,12 @@ fn events(mut closed: bool, edges: &[Edge]) -> Events {
 }
 
 impl Events {
-    /// Returns true for a contact that moves without switching, at least three times.
+    /// Returns true for a contact with at least three bursts of edges that returned to the state before.
     pub fn is_intermittent(&self) -> bool {
         self.stray >= STRAY
     }
 
-    /// Returns the greatest number of edges of one switching in addition to its own; `None` without a switching.
+    /// Returns the greatest number of edges of one switching beyond the one it needs; `None` without a switching.
     pub fn most_extra_edges(&self) -> Option<u32> {
         let all = self.switching.operate.iter().chain(&self.switching.reset);
         all.map(|it| it.edges - 1).max()
