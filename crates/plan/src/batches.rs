@@ -32,14 +32,14 @@ struct Node<'a> {
 }
 
 impl Node<'_> {
-    /// Goes on straight in one direction.
+    /// Takes off, one after another, all units that can leave in this direction.
     fn along(mut self, direction: Direction) -> Self {
         self.order.extend(self.remaining.remove_along(direction));
         self.last = Some(direction);
         self
     }
 
-    /// Takes a way with two legs, then goes on in the direction of its last leg.
+    /// Takes off a unit by a way with two legs, then all units that can leave in the direction of its last leg.
     fn by(mut self, taken: Taken, last: Direction) -> Self {
         self.remaining.remove(taken.unit, |_| {});
         self.order.push(taken);

@@ -17,7 +17,7 @@ use crate::shortest::best_order;
 use crate::table::Interference;
 use crate::ways::{Units, straight, two_step};
 
-/// The tables of an assembly, from which plans are made.
+/// The interference tables of an assembly; it makes plans from them.
 #[derive(Debug, Clone)]
 pub struct Planner<'a> {
     assembly: &'a Assembly,
@@ -26,7 +26,7 @@ pub struct Planner<'a> {
     priority: Vec<Direction>,
 }
 
-/// What a plan ends with.
+/// Answer to a demand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// An order exists.
@@ -40,7 +40,7 @@ pub enum Outcome {
 pub struct LockedElements {
     /// Numbers of the elements, in ascending order.
     pub elements: Vec<usize>,
-    /// For each of them: the elements, of the set or staying, that block its ways.
+    /// For each entry of `elements`: the elements that block its ways; each of these is locked or has to stay.
     pub by: Vec<Vec<usize>>,
     /// True when no smaller set is locked.
     pub is_smallest: bool,

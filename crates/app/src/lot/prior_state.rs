@@ -26,7 +26,8 @@ pub(super) struct PriorState {
 }
 
 impl PriorState {
-    /// Reads the state from `store`. A simulated rig has its calibration with it instead; a new one has none.
+    /// Reads the state from `store`. The calibration of a simulated rig comes from the rig instead; a new one has only
+    /// what the certificates of the plant give.
     pub fn read(store: &Store, context: &LotContext) -> anyhow::Result<Self> {
         let simulated = context.is_simulated();
         let calibration = match context.purpose {
@@ -122,8 +123,8 @@ fn uses(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
     })
 }
 
-/// Returns the calibration that the certificates of the plant give, as made now; `None` for a kind that is calibrated on
-/// parts. A stored one that has run out refuses the lot before.
+/// Returns the calibration that the certificates of the plant give, as made now; `None` for a kind that is calibrated
+/// on parts. An expired calibration in the store has refused the lot before this call.
 fn certified(context: &LotContext) -> Option<Calibration> {
     let made = Made {
         at_us: context.epoch_us,

@@ -7,8 +7,8 @@
 //! | coast | fan only | losses and fan, together with the drift of the rest |
 //! | vent | vent open | power that the vent removes |
 //!
-//! The run takes 15 minutes and heats by some 20 K. A chamber that the rest shows to be warm is cooled first with the vent
-//! open, and rests again.
+//! The run takes 15 minutes and heats by some 20 K. When the rest shows that the chamber is warm, the run first cools
+//! it with the vent open, then rests again.
 
 mod doubt;
 
@@ -23,18 +23,18 @@ use crate::statistics::{mean, slope};
 const LENGTHS_S: [usize; 4] = [180, 300, 300, 90];
 /// Stretch at the end of rest and coast that gives the drift, s.
 const DRIFT_S: usize = 120;
-/// Length of the response to which the first-order model is fitted, s.
+/// Length of the response that the first-order model fits, s.
 const FIRST_ORDER_S: usize = 120;
 /// Least delay of the first-order model, as a share of the delay of the whole response. With a quick sensor the model
 /// alone would show hardly any delay, and a loop that is tuned on it oscillates.
 const LEAST_DELAY: f64 = 0.65;
-/// Least delay of that model, s: sampling and the filter of the derivative.
+/// Least delay of the first-order model, s: sampling and the filter of the derivative.
 const LEAST_DELAY_S: f64 = 4.2;
 /// Least rise of the heat stage, K.
 const LEAST_RISE_K: f64 = 3.0;
-/// Coolings after which a chamber that still drifts is identified as it is.
+/// Most coolings of a warm chamber; after them the run identifies it even if it still drifts.
 const MOST_COOLINGS: usize = 2;
-/// Rounds that find the temperature around a chamber that was cooled.
+/// Iterations that find the temperature around a cooled chamber.
 const AMBIENT_ROUNDS: usize = 8;
 /// Vent open, no heat.
 const VENTED: Command = Command {
@@ -95,7 +95,7 @@ pub struct Identification {
 }
 
 impl Identification {
-    /// Starts a run with a step of the heater (0 to 1), with a temperature that it must not exceed.
+    /// Starts a run whose heater step is `power`, 0 to 1; the chamber must not exceed `limit_c`.
     pub fn new(power: f64, ambient_c: f64, limit_c: f64) -> Self {
         let readings_c = Vec::with_capacity(LENGTHS_S.iter().sum());
         Self {

@@ -55,7 +55,7 @@ impl Trial {
     }
 
     /// Performs one second of the experiment and returns the command for heater and vent; `None` when the experiment is
-    /// over. `control_c` is the temperature to control, C.
+    /// over. `control_c` is the reading of the control thermometer, C.
     ///
     /// # Errors
     /// Fails with the trouble of the chamber; the caller switches the heater off.
