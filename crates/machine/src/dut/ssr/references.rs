@@ -1,5 +1,5 @@
-//! Corrections of the channels of the digitizer, from the references of the fixture. The first part of a lot measures
-//! them; they are measured again with the first part after [`VALID`].
+//! Corrections of the channels of the digitizer, from the references of the fixture. The test of the first part of a
+//! lot measures them first; the first part after [`VALID`] repeats this.
 
 use super::wave::split::Admittance;
 use units::{RigTime, Span};
@@ -26,10 +26,11 @@ pub struct References {
     pub at: RigTime,
 }
 
-/// Currents of the open fixture at the rated voltage of a DC part, A: offset of the meter and insulation.
+/// Currents through the fixture without a part at the rated voltage of a DC part, A: offset of the meter and
+/// insulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpenFixture {
-    /// With the sources as they are.
+    /// With the polarity of the test.
     pub forward_a: f64,
     /// With reversed voltage.
     pub reversed_a: f64,
