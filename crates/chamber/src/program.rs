@@ -7,7 +7,8 @@ use crate::ramp::{BLEND_S, Ramp, SetPoint};
 
 /// Rate between the windows, K/min.
 pub const TRAVEL_K_PER_MIN: f64 = 10.0;
-/// The set point has reached the rate of the pass this far before a window, K; the lag at that rate comes in addition.
+/// Distance before and after a window at which the set point moves at the rate of the pass, K, besides the lag at that
+/// rate.
 pub const MARGIN_K: f64 = 3.0;
 
 /// A range of switching temperatures of parts, C.
@@ -24,14 +25,14 @@ pub struct Window {
 pub struct Pass {
     /// Rate within the windows, K/min.
     pub rate_k_per_min: f64,
-    /// Where parts operate.
+    /// Temperatures at which parts may operate.
     pub operate: Window,
-    /// Where parts reset.
+    /// Temperatures at which parts may reset.
     pub reset: Window,
 }
 
-/// A pass with the lag for which its corners leave room. Both change together, so that a pass under way keeps the
-/// corners that its set point heads for.
+/// A pass with the lag of the parts, which widens the stretches at its rate. [`Program::narrow`] changes both together,
+/// and never behind the approach, so that the set point keeps the temperature that it heads for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Planned {
     pass: Pass,
@@ -39,13 +40,13 @@ struct Planned {
 }
 
 impl Planned {
-    /// Returns where the air begins and ends its rise at the rate of the pass, C.
+    /// Returns the temperatures at which the air begins and ends its rise at the rate of the pass, C.
     fn rise(&self) -> [f64; 2] {
         let (Window { low_c, high_c }, reach_k) = (self.pass.operate, self.reach_k());
         [low_c - reach_k, high_c + reach_k]
     }
 
-    /// Returns where the air begins and ends its fall at the rate of the pass, C.
+    /// Returns the temperatures at which the air begins and ends its fall at the rate of the pass, C.
     fn fall(&self) -> [f64; 2] {
         let (Window { low_c, high_c }, reach_k) = (self.pass.reset, self.reach_k());
         [high_c + reach_k, low_c - reach_k]
@@ -68,11 +69,11 @@ pub struct Waiting {
 /// Phase of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
-    /// Fast, to the operate window.
+    /// At [`TRAVEL_K_PER_MIN`] to the operate window.
     Approach,
     /// Through the operate window.
     Rise,
-    /// Fast, to the reset window.
+    /// At [`TRAVEL_K_PER_MIN`] to the reset window.
     Descent,
     /// Through the reset window.
     Fall,
@@ -91,7 +92,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Starts at the present temperature; `lag_s` is the expected lag of the parts.
+    /// Starts at the present temperature; `lag_s` is the expected lag of the parts, `unload_c` the temperature after
+    /// the last pass.
     pub fn new(measured_c: f64, passes: Vec<Pass>, lag_s: f64, unload_c: f64) -> Self {
         let planned = |pass: Pass| Planned { pass, lag_s };
         let mut program = Self {
@@ -130,8 +132,8 @@ impl Program {
         self.enter(Phase::Approach);
     }
 
-    /// Changes windows and lag of the passes to come, and of the present one during its approach. The caller does this
-    /// when earlier passes have shown where the parts switch.
+    /// Changes windows and lag of the passes to come, and of the present one during its approach, once earlier passes
+    /// have shown the temperatures at which the parts switch.
     pub fn narrow(&mut self, operate: Window, reset: Window, lag_s: f64) {
         let approaches = self.phase == Phase::Approach;
         let first = self.number + usize::from(!approaches);

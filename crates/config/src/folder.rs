@@ -97,7 +97,7 @@ impl Folder {
         }
     }
 
-    /// Reads and parses a file. `expected` says in the message about a missing file what it should hold.
+    /// Reads and parses a file; `expected` describes its content in the message that it cannot be read.
     pub(super) fn file(&self, name: &str, expected: &'static str) -> Result<File, ConfigError> {
         self.check_exists()?;
         let file = self.path(name);

@@ -100,7 +100,7 @@ pub struct Plan {
     pub reverse: CurrentRange,
     /// Ranges of the load circuit.
     pub load: CurrentRange,
-    /// Errors of the digitizer's base of time.
+    /// Errors of the time base of the digitizer.
     pub time: Accuracy,
     /// Number of parts of a lot of which the sampled characteristics are measured; none for all.
     pub sampling: Option<u32>,
