@@ -105,7 +105,7 @@ pub(super) enum Method {
     Post,
 }
 
-/// One route.
+/// A route of the HTTP interface with its handler and its entry in the OpenAPI document.
 pub(super) struct Route {
     pub path: &'static str,
     pub method: Method,

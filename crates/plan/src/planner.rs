@@ -1,4 +1,4 @@
-//! From demands to a sequence, or to the set of elements that lock each other.
+//! Plans a sequence that meets demands, or finds the elements that lock each other.
 
 use crate::assembly::Assembly;
 use crate::batches::fewest_changes;

@@ -159,13 +159,13 @@ impl Identification {
         self.coolings < MOST_COOLINGS && !cool::is_cold(&self.readings_c, drift)
     }
 
-    /// Returns the temperature around the chamber, C: the one that the run was given, or for a chamber that was cooled the
-    /// one that the figures have shown.
+    /// Returns the temperature around the chamber, C: the one given at the start, or, after a cooling, the one that
+    /// fits the figures.
     pub fn ambient_c(&self) -> f64 {
         self.ambient_c
     }
 
-    /// Finds the temperature around a chamber that was cooled: the one that balances fan, losses and vent at the end of the
+    /// Finds the temperature around a cooled chamber: the one that balances fan, losses and vent at the end of the
     /// cooling.
     fn find_ambient(&mut self, found: &Identified) {
         let Some(Cooled {
@@ -193,8 +193,8 @@ impl Identification {
         (heated.map(rise).collect(), drift, start_c)
     }
 
-    /// Returns the figures. Those of fan and vent depend on the temperature around the chamber, and it on them, so that a
-    /// few rounds find both.
+    /// Returns the figures. The figures of fan and vent depend on the temperature around the chamber, and this
+    /// temperature on them, so the function finds both by iteration.
     fn settled_figures(&mut self) -> Result<Identified, IdentifyError> {
         let mut found = self.figures()?;
         for _ in 0..AMBIENT_ROUNDS {
