@@ -1,5 +1,5 @@
-//! Journal of the outputs: every change of a digital output, expiry of a host watchdog, fault that strikes, coil that
-//! is overdriven, move of the main contacts of a contactor, and reply that this computer made late.
+//! Journal of the rig: changes of digital outputs, expired host watchdogs, faults that strike, overdriven coils, moves
+//! of the main contacts of contactors, and replies that this computer sent late.
 //!
 //! The journal records at the terminals, between modules and world, so that it holds the signals that the actuators
 //! get. It is off until [`JournaledWorld::listen`].

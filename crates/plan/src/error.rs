@@ -1,4 +1,4 @@
-//! What can be wrong with an assembly or a demand.
+//! Errors of an assembly or a demand.
 
 use crate::extent::Extent;
 

@@ -1,4 +1,4 @@
-//! From an experiment on the chamber to settings of its controller: a step response, or a relay oscillation.
+//! Finds the settings of a controller from an experiment on its chamber: a step response, or a relay oscillation.
 
 mod cool;
 mod doubt;

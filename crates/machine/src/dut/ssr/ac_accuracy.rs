@@ -1,5 +1,5 @@
-//! Uncertainty budgets of AC parts, from the accuracies of digitizer, source and shunts and the terms of each method
-//! (ssr.md, section 5).
+//! Uncertainty budgets of AC parts, from the accuracies of digitizer, source and shunts and from the terms of each
+//! method.
 
 use super::ac_plan::{AcPlan, CLAMP_V, SHUNT_ERROR};
 use super::measure::line::leakage::Leak;

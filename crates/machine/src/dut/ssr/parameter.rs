@@ -129,7 +129,7 @@ impl Parameter {
 }
 
 impl Parameter {
-    /// Returns true for a characteristic that a recipe may measure on some parts of a lot alone.
+    /// Returns true for a characteristic that a recipe may measure on a sample of the lot instead of on every part.
     pub const fn is_sampled(self) -> bool {
         matches!(self, Self::DcOffset | Self::Distortion)
     }

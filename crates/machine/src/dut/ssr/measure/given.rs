@@ -1,4 +1,4 @@
-//! What a stage has read, with the points of the rig.
+//! Readings of a stage, by instrument and point, for its conclusion.
 
 use crate::dut::ssr::points::{Device, DigitalIn, Points};
 use crate::instrument::query::Waveform;

@@ -182,7 +182,7 @@ impl Seconds {
         Doing::Pulse(Runner::new(acts, now), places)
     }
 
-    /// Keeps the resistances of the pulses that have just ended; unreadable ones tell nothing.
+    /// Keeps the resistances of the pulses that have just ended; drops unreadable ones.
     fn keep_pulses(&mut self, device: &Device, now: RigTime) {
         let Doing::Pulse(runner, places) = &self.doing else {
             return;
@@ -247,7 +247,7 @@ impl Seconds {
         self.rate_k_per_min = self.slope.step(reference_c);
     }
 
-    /// Returns what pages show of this part of the test.
+    /// Returns the passes, temperatures, outputs and curve that pages show.
     pub fn shown(&self) -> BatchShown {
         let passes = match &self.work {
             Some(Work::Passes(passes)) => passes.progress(),
@@ -268,7 +268,7 @@ impl Seconds {
         }
     }
 
-    /// Checks thermometers and power outside of the passes, whose watch knows more.
+    /// Checks thermometers and power before the passes and in experiments; during passes [`Work`] checks more.
     fn check_sensors(&mut self, seen: &Seen) -> Result<(), Finding> {
         if matches!(self.work, Some(Work::Passes(_))) {
             return Ok(());
@@ -312,7 +312,7 @@ impl Seconds {
     }
 }
 
-/// Returns what the contact of a part has shown so far.
+/// Returns the socket of a part and the switchings of its contact so far.
 fn part(device: &Device, contact: &Contact) -> Option<Shown> {
     let socket = device.points.of_contact(contact.input())?;
     Some(Shown {
@@ -334,7 +334,7 @@ fn usable(image: &Image, point: Thermometer) -> Option<Sample> {
     (sample.quality == Quality::Good && sample.value.is_finite()).then(|| sample.clone())
 }
 
-/// Counts the sockets that have yet to switch; a contact that was open when cold does not count.
+/// Counts the sockets that have yet to switch, without those whose contact was open when cold.
 fn waiting(contacts: &[Contact], now_s: f64) -> Waiting {
     let live = contacts.iter().filter(|it| it.cold() == Some(true));
     let (operated, all) = live.fold((0, 0), |(operated, all), it| {
