@@ -21,9 +21,9 @@ pub struct Known {
     pub identity: String,
     /// Epoch of the rig.
     pub epoch: i32,
-    /// Computer that began it.
+    /// Computer that began this epoch.
     pub host: String,
-    /// When it began.
+    /// Start of this epoch, as messages show it.
     pub since: String,
     /// Number and UUID of its last batch.
     pub last: Option<(i64, String)>,
@@ -38,7 +38,7 @@ pub struct Facts {
     pub current: Option<Known>,
     /// True when the database has the batch that the file confirmed last.
     pub has_confirmed: bool,
-    /// True when an earlier epoch of the rig was this file.
+    /// True when this file held the rig in an earlier epoch.
     pub was_ours: bool,
 }
 
