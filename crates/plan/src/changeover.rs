@@ -1,8 +1,8 @@
-//! Changes from one assembly to another: what stays, goes and comes, in order.
+//! Plans the change from one assembly to another: what stays, goes and comes, in order.
 //!
 //! An element with the same id, shape and place in both assemblies stays, unless it must come off for a while so that
-//! others can go or come. Whatever comes off one assembly for that reason comes off the other one too; the two sides are
-//! planned in turns until they agree.
+//! others can go or come. An element that comes off one assembly for that reason comes off the other one too; the
+//! planner plans the two sides in turns until they agree.
 
 use crate::assembly::{Assembly, Element};
 use crate::demands::Demands;
@@ -28,7 +28,7 @@ pub struct Changeover {
     pub on: Option<Sequence>,
 }
 
-/// What a changeover ends with.
+/// Result of planning a changeover.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Planned {
     /// An order exists.
