@@ -168,8 +168,7 @@ impl Table {
         self.entries.get(key)
     }
 
-    /// Reads the value of a key. Fails when the value does not fit `T`, and when the key is missing and `T` has no
-    /// value for that.
+    /// Reads the value of a key; fails when it does not fit `T`, or is missing and `T` has no value for that.
     pub fn get<T: Read>(&self, key: &'static str) -> Result<T, ConfigError> {
         match self.find(key) {
             Some(entry) => T::read(entry),

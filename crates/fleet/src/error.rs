@@ -20,7 +20,7 @@ pub enum Refusal {
         rig: String,
         /// Computer of the other file.
         host: String,
-        /// When the other file began.
+        /// Time at which the other file began.
         since: String,
         /// Epoch of the other file.
         epoch: i32,
@@ -35,9 +35,9 @@ pub enum Refusal {
         rig: String,
         /// Computer of the later file.
         host: String,
-        /// When it began.
+        /// Time at which the later file took over.
         since: String,
-        /// Its epoch.
+        /// Epoch of the later file.
         epoch: i32,
     },
     /// The database has more of this file than the file itself.

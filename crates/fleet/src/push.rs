@@ -12,20 +12,20 @@ use tokio_postgres::types::ToSql;
 /// Entries of the queue in one batch. A batch of 2,000 parts with 24 measurements each takes the server about a second.
 const ENTRIES: u32 = 2000;
 
-/// What was sent.
+/// Counts of a transfer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Pushed {
-    /// Batches that the database has committed.
+    /// Number of batches that the database has committed.
     pub batches: u64,
-    /// Parts in them.
+    /// Number of parts in these batches.
     pub parts: u64,
 }
 
 /// Sends until the database lacks nothing, or until `stop` returns true between two batches.
 ///
 /// # Errors
-/// Fails when the database refuses the file or cannot be reached. Batches committed before stay; what else was to be
-/// sent stays in the queue.
+/// Fails when the database refuses the file or cannot be reached. The database keeps the batches committed before; the
+/// other rows stay in the queue.
 pub async fn push(
     outbox: &mut Outbox,
     fleet: &FleetSettings,

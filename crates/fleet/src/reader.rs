@@ -19,7 +19,7 @@ const DOING: &str = "asking";
 /// Rows of one page.
 const PAGE: usize = 1000;
 
-/// Which rigs answer; a member that is absent selects all.
+/// Selection of the rigs that answer; an absent member selects all.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Rigs {
     /// Name of the plant.

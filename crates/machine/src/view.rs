@@ -232,7 +232,7 @@ pub struct InstrumentView {
     pub profile: String,
     /// Address of its link.
     pub link: String,
-    /// Its answer to `*IDN?`; null before the first answer.
+    /// Answer of the instrument to `*IDN?`; null before the first answer.
     pub identity: Option<String>,
     /// Programs that have begun, safe programs included.
     pub programs: u64,

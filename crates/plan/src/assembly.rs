@@ -18,11 +18,12 @@ pub struct Element {
     pub pose: Pose,
 }
 
-/// What counts as contact.
+/// Tolerances of contacts and mates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// Depth by which two elements may press into each other and still slide, mm: above 0, at most 1. Everything that
-    /// presses deeper blocks. Two bodies thinner than the depth are kept at 1e-3 mm.
+    /// presses deeper blocks. A body thinner than the depth keeps a core of 2e-3 mm, or its own thickness where that is
+    /// less.
     pub contact_mm: f64,
     /// Gap up to which two elements count as mated, mm: 0 to 10.
     pub mate_mm: f64,
@@ -196,7 +197,7 @@ impl Assembly {
         &self.model
     }
 
-    /// Returns what is subtracted from every position in the model, mm.
+    /// Returns the origin of the model in the frame of the assembly, mm.
     pub(crate) fn origin(&self) -> [f64; 3] {
         self.origin
     }

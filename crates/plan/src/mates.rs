@@ -43,7 +43,7 @@ pub struct Mate {
     pub a: usize,
     /// Number of the second element.
     pub b: usize,
-    /// How they are held.
+    /// Kind of the mate.
     pub kind: Kind,
 }
 

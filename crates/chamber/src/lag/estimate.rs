@@ -20,7 +20,7 @@ const STEP: f64 = 0.02;
 /// event stay solvable.
 const NOTHING: f64 = 1e-9;
 
-/// What scatters from one switching to the next, and what delays the sensor.
+/// Scatter of switchings, and delay of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
     /// Scatter of a switching temperature from cycle to cycle, one standard deviation, K.

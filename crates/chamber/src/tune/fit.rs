@@ -16,7 +16,7 @@ const ROUNDS: i32 = 8;
 pub struct TwoPart {
     /// Gain of the settling part, K per unit of power.
     pub gain_k: f64,
-    /// Its time constant, s.
+    /// Time constant of the settling part, s.
     pub time_constant_s: f64,
     /// Delay, s.
     pub delay_s: f64,

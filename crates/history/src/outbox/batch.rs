@@ -1,12 +1,12 @@
 //! Rows of a batch. Times are microseconds since 1970 UTC; numbers of parts and runs are the row numbers of the file.
 
-/// Which raw replies travel.
+/// Choice of the raw replies that go to a database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SampleChoice {
     /// None.
     #[default]
     None,
-    /// Those of parts that did not pass.
+    /// Raw replies of parts that did not pass.
     Rejects,
     /// All.
     All,

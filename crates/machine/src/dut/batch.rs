@@ -33,7 +33,7 @@ pub struct SocketResult {
     pub record: TestRecord,
 }
 
-/// What the test of a batch has met that concerns the rig and not a part; the station raises an alarm.
+/// Trouble of the rig, not of a part, that the test of a batch has met; the station raises an alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum BatchTrouble {
     /// A thermometer of the air has no usable reading.
@@ -70,14 +70,14 @@ pub enum BatchTrouble {
     LagUnexpected(u32, u32),
 }
 
-/// What the test of a batch has brought.
+/// Outcome of the test of a batch.
 #[derive(Debug)]
 pub struct BatchOutcome {
     /// A result for each socket of the order.
     pub results: Vec<SocketResult>,
-    /// Troubles, in the order in which they were met.
+    /// Troubles, in the order in which the test met them.
     pub troubles: Vec<BatchTrouble>,
-    /// What an experiment without parts has found; `None` after the test of parts, and after trouble.
+    /// Figures that an experiment without parts has found; `None` after the test of parts, and after trouble.
     pub found: Option<Found>,
 }
 
@@ -102,6 +102,6 @@ pub trait BatchTest: Debug + Send {
     /// Returns the longest time that the test may take; a longer one counts as stuck.
     fn longest(&self) -> Span;
 
-    /// Returns what pages show of the test.
+    /// Returns the progress of the test as pages show it.
     fn shown(&self) -> BatchShown;
 }

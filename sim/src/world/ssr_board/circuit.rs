@@ -112,7 +112,7 @@ impl SsrBoard {
         self.touching && self.reference == Reference::Part && present[2] && present[3]
     }
 
-    /// Returns what is connected to the socket beside the source-measure unit.
+    /// Returns the network at the socket without the source-measure unit.
     pub(super) fn network(&self, part: Option<&Ssr>) -> Network {
         let table = &self.table;
         let mut network = Network {

@@ -183,8 +183,8 @@ pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
     Budget::default().with_bounds("offset", offset_v / mean_v * 100.0)
 }
 
-/// Returns the budget of the rise of the drop, mV. Offsets cancel. It begins with one period of the record, a
-/// tenth of its samples, and ends with [`LATE`] of them.
+/// Returns the budget of the rise of the drop, mV, from the first period of the record, a tenth of its samples, to the
+/// last [`LATE`] periods. The offset is in both drops and cancels.
 pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
     let gain_share = gain(ac, on.is_referenced);
     let noise_v = (10.0 + 10.0 / LATE as f64).sqrt() * on.noise_v;

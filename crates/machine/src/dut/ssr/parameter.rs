@@ -31,7 +31,7 @@ pub enum Parameter {
     OnResistance,
     /// Current of the blocked output at its rated voltage, before the output has conducted.
     LeakageCold,
-    /// The same after the output has conducted.
+    /// Current of the blocked output at its rated voltage, after the output has conducted.
     LeakageHot,
     /// Part of the leakage in phase with the voltage.
     LeakageResistive,

@@ -15,7 +15,7 @@ pub enum Position {
     Isolated,
     /// Output at its source through 1 kohm.
     Load,
-    /// The same with the pulse source at the control input.
+    /// Output at its source through 1 kohm; pulse source at the control input.
     Pulsed,
     /// Output at its source, four wires.
     Direct,

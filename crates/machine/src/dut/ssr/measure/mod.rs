@@ -173,7 +173,7 @@ impl Test {
 }
 
 impl Test {
-    /// Returns what is proven about the limit of a threshold.
+    /// Returns the proven judgement of the limit of a threshold; `None` without a proof.
     fn proof(&self, of: Parameter) -> Option<Judgement> {
         self.state.proof(of).or_else(|| self.proof_of_late(of))
     }

@@ -18,7 +18,8 @@ use units::{Span, Unit};
 /// Time beyond the length of a record until the digitizer has stored it.
 const STORED: Span = Span::ms(2);
 
-/// Returns the acts of one pulse. Both sources at the input are at 0 V while it changes over.
+/// Returns the acts of one pulse. Both sources of the control input are at 0 V while the input changes from one to the
+/// other.
 pub fn acts(state: &mut State, plan: &Plan, points: &Points) -> Vec<Act> {
     let mut acts = match state.position {
         Position::Load | Position::Pulsed => Vec::new(),

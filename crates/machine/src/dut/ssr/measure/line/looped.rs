@@ -66,7 +66,7 @@ pub struct Drops<'a> {
     is_referenced: bool,
 }
 
-/// What the record of a loop shows.
+/// Figures of a conducting output, read from the record of a loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnState {
     /// Drop at the peak of the rated current, V: mean of both polarities.
