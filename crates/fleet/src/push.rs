@@ -51,7 +51,7 @@ pub async fn push(
     Ok(pushed)
 }
 
-/// Sends everything again, after the database has lost rows; it keeps what it has.
+/// Queues every row again, after the database has lost rows; the database keeps what it has.
 ///
 /// # Errors
 /// Fails when the database cannot be reached, or another file sends under the name of this rig.
@@ -74,7 +74,7 @@ pub async fn start_again(
     Ok(outbox.restart(&target.url, &Restart::Again { last })?)
 }
 
-/// Makes this file the current one of its rig, as a new epoch. Sends those runs that the database lacks.
+/// Makes this file the current one of its rig, as a new epoch. Queues the runs that the database lacks.
 ///
 /// # Errors
 /// Fails when the database cannot be reached.

@@ -77,7 +77,7 @@ impl Shared {
 }
 
 impl Pusher {
-    /// Starts a thread for each database of `fleet`. `told` is called on these threads.
+    /// Starts a thread for each database of `fleet`. These threads call `told`.
     #[must_use]
     pub fn start(fleet: &FleetSettings, db: PathBuf, told: Told) -> Self {
         let state = |it: &FleetTarget| TargetState {

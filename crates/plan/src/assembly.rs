@@ -220,7 +220,7 @@ impl Assembly {
     }
 
     /// Returns the elements that an element meets on a straight way that begins at `from` (a displacement from its
-    /// place, mm), in the order of their numbers. Guided pairs are left out.
+    /// place, mm), in the order of their numbers. Leaves out elements that guide it, or that it guides.
     ///
     /// # Errors
     /// Fails when the collision core cannot decide the move.

@@ -47,7 +47,7 @@ impl Node<'_> {
     }
 }
 
-/// Returns an order in which every unit that has to leave does, with the fewest changes found; `None` when units are
+/// Returns an order in which every unit leaves that has to, with the fewest changes found; `None` when units are
 /// locked.
 pub(crate) fn fewest_changes(problem: &Problem) -> Option<FewChanges> {
     let mut all = Remaining::all(problem);

@@ -22,9 +22,10 @@ pub struct Changeover {
     pub comes: Vec<String>,
     /// Ids that come off for a while and go back to their place, sorted.
     pub returns: Vec<String>,
-    /// Disassembly of the first assembly; element numbers are those of it. Empty when nothing comes off.
+    /// Disassembly of the first assembly, with its element numbers; `None` when nothing comes off.
     pub off: Option<Sequence>,
-    /// Disassembly of the second assembly, whose reverse brings it together; element numbers are those of it.
+    /// Disassembly of the second assembly; its reverse puts this assembly together. Element numbers are those of the
+    /// second assembly.
     pub on: Option<Sequence>,
 }
 

@@ -22,7 +22,7 @@ pub struct Locked {
     pub is_smallest: bool,
 }
 
-/// Returns a smallest locked set; `None` when everything that has to leave can.
+/// Returns a smallest locked set; `None` when everything that has to leave can leave.
 pub fn locked(problem: &Problem) -> Option<Locked> {
     let mut remaining = Remaining::all(problem);
     let removable = remaining.remove_removable();

@@ -128,8 +128,8 @@ impl<'a> Planner<'a> {
         Problem::new(ways, leaves.collect())
     }
 
-    /// Returns the units that rest on each unit. Two units that hold each other from below are left out: neither can
-    /// wait for the other.
+    /// Returns the units that rest on each unit. Leaves out two units that hold each other from below: neither can wait
+    /// for the other.
     fn rests(&self, units: &Units) -> Vec<Vec<u32>> {
         let held = self.held_from_below(units);
         let on = |lower: usize| {
@@ -236,7 +236,7 @@ struct Making<'a> {
 pub struct Ordered {
     /// The units with their ways, in the order in which they leave.
     pub order: Vec<Taken>,
-    /// How it was found.
+    /// Method that found the order.
     pub method: Method,
     /// True when no order has fewer changes of direction.
     pub is_fewest_changes: bool,
@@ -320,8 +320,8 @@ impl Making<'_> {
     }
 }
 
-/// Returns the cheapest order found, `None` when units are locked: the best one for few units; for many, few changes and
-/// ways made shorter. The rule of the paper is kept where it is as cheap.
+/// Returns the cheapest order found, `None` when units are locked: the best one for few units; for many, few changes
+/// and ways made shorter. Prefers the order of the rule of the paper where it is as cheap.
 pub fn ordered(problem: &Problem, priority: &[Direction]) -> Option<Ordered> {
     let found = fewest_changes(problem)?;
     let (order, is_fewest_changes) = match best_order(problem) {

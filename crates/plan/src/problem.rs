@@ -82,8 +82,8 @@ pub struct Cost {
 }
 
 impl Problem {
-    /// Makes a problem; `leaves` says which units have to leave, the others stay where they are. Ways of units that
-    /// stay are dropped.
+    /// Makes a problem; `leaves` says which units have to leave, the others stay where they are. Drops the ways of
+    /// units that stay.
     pub fn new(mut ways: Vec<Vec<Way>>, leaves: Vec<bool>) -> Problem {
         let mut blocks = vec![Vec::new(); ways.len()];
         let mut starts = Vec::with_capacity(ways.len());

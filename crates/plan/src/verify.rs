@@ -1,6 +1,6 @@
 //! Verification of a sequence: each step moves through the collision core with everything else in place.
 //!
-//! The tables are not used. For each step the model holds exactly what is still on the rig, or on the bench beside the
+//! It uses no table. For each step the model holds exactly what is still on the rig, or on the bench beside the
 //! elements of the step. Clearances are those of the true bodies, without any depth taken off.
 
 use crate::assembly::{Assembly, modelled};
@@ -8,7 +8,7 @@ use crate::error::PlanError;
 use crate::sequence::Step;
 use lpm::{ElementKey, Model, Move, Mover, Pose};
 
-/// Clearances are found up to this distance, mm.
+/// Greatest distance that a clearance reports, mm.
 pub const RANGE_MM: f64 = 25.0;
 
 /// Distances of a step that the collision core has found clear.

@@ -3,7 +3,7 @@
 use super::Observed;
 use crate::tune::Identified;
 
-/// Least excess of the chamber over ambient at which the vent is used, K.
+/// Least excess of the chamber over ambient at which the vent opens, K.
 const LEAST_EXCESS_K: f64 = 1.0;
 
 /// Outputs of one second.

@@ -39,7 +39,7 @@ pub(super) enum Question {
 /// Number of kinds of questions.
 const KINDS: usize = 20;
 
-/// A question was refused, in these words.
+/// Refusal of a question, in words.
 #[derive(Debug, thiserror::Error)]
 #[error("refused: {0}")]
 pub(super) struct Refused(String);

@@ -28,7 +28,7 @@ pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Bu
         .with_random("noise", meter.noise_over(range.periods) / unit_a)
 }
 
-/// Returns the budget of a leakage, microamperes, of which the current of the open fixture is subtracted when it is known.
+/// Returns the budget of a leakage, microamperes; the test subtracts the current of the open fixture when it is known.
 /// The difference has the noise of both readings, and no offset.
 pub fn leakage(
     range: &CurrentRange,

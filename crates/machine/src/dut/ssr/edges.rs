@@ -19,7 +19,7 @@ const JUMP: f64 = 0.5;
 const DISTINCT: f64 = 8.0;
 /// Codes that a converter of 8 bits has at least between the levels of a signal.
 const FEWEST_CODES: f64 = 100.0;
-/// Samples on either side over which the slope of an edge is taken.
+/// Number of samples on either side of an edge that give its slope.
 const AROUND: usize = 2;
 /// Least number of samples before, during and after the pulse.
 const FEWEST: usize = 8;

@@ -18,7 +18,7 @@ pub const LOAD_V: f64 = 8.0;
 pub const LOAD_OHM: f64 = 1000.0;
 /// Resistance of the pulse source, ohm.
 pub const PULSE_OHM: f64 = 50.0;
-/// Largest current with which the resistance is measured, A.
+/// Largest current for measuring the resistance, A.
 const MOST_A: f64 = 1.0;
 /// Room above a limit that a range must have.
 const ROOM: f64 = 1.2;
@@ -102,7 +102,7 @@ pub struct Plan {
     pub load: CurrentRange,
     /// Errors of the time base of the digitizer.
     pub time: Accuracy,
-    /// Number of parts of a lot of which the sampled characteristics are measured; none for all.
+    /// Number of parts of a lot of which the test measures the sampled characteristics; `None` for all parts.
     pub sampling: Option<u32>,
     /// Characteristics with a limit; the others sort no part.
     pub judged: Vec<Parameter>,
@@ -128,7 +128,7 @@ pub struct DcPlan {
     pub rated_v: f64,
     /// Current of the conducting output, A.
     pub rated_a: f64,
-    /// Larger of the two currents at which the resistance is measured, A; the other is half of it.
+    /// Larger of the two currents that measure the resistance, A; the other is half of it.
     pub drop_a: f64,
     /// True when the reversed output conducts through its body diode.
     pub body_diode: bool,

@@ -19,7 +19,8 @@ const SAFE: [DigitalIn; 3] = [
 ];
 /// Longest time until these inputs show a safe socket.
 const WITHIN: Span = Span::ms(500);
-/// Times that the socket is looked at before it counts as live: the first conversion may be older than the discharge.
+/// Number of readings after which a socket that is not safe counts as live: the first one may be older than the
+/// discharge.
 const LOOKS: u32 = 3;
 /// Time of two conversions of the slowest converter, which has all its channels enabled.
 const CONVERSIONS: Span = Span::ms(220);
