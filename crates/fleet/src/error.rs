@@ -58,7 +58,7 @@ pub enum Refusal {
         /// Parts of this run there.
         parts: i64,
     },
-    /// The database has less than it confirmed.
+    /// The database has fewer batches than it has confirmed.
     #[error(
         "rig {rig}: the database has {there} batches of this file, but had confirmed {here}: it is an older backup or \
          another database. Run `relayrig fleet push --again`, which sends what it lacks"
@@ -157,7 +157,7 @@ pub enum FleetError {
     RealRigs {
         /// URL of the database, without password.
         target: String,
-        /// A plant in it.
+        /// A plant with real rigs in the database.
         site: String,
     },
     /// The program has no thread for the connection.

@@ -26,7 +26,7 @@ pub enum PlanError {
     Flawed {
         /// Id of the element.
         id: String,
-        /// What is wrong with it.
+        /// Flaw of its body or pose.
         flaw: lpm::Flaw,
     },
     /// An element reaches out of the space in which the plan is made.

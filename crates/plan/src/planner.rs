@@ -320,8 +320,9 @@ impl Making<'_> {
     }
 }
 
-/// Returns the cheapest order found, `None` when units are locked: the best one for few units; for many, few changes
-/// and ways made shorter. Prefers the order of the rule of the paper where it is as cheap.
+/// Returns the cheapest order found; `None` when units are locked. For few units this is the best order; for many it is
+/// one with few changes of direction, whose ways a search has shortened. Prefers the order of the rule of the paper
+/// where it is as cheap.
 pub fn ordered(problem: &Problem, priority: &[Direction]) -> Option<Ordered> {
     let found = fewest_changes(problem)?;
     let (order, is_fewest_changes) = match best_order(problem) {

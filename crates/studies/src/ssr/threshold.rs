@@ -114,8 +114,8 @@ fn bisect(parts: u64, width_mv: f64, is_expected: bool) -> Figure {
     }
 }
 
-/// One step a guard band below the limit: share of the parts beyond the limit that it accepts. The thresholds lie within
-/// 20 mV of the limit.
+/// Returns the share of the parts beyond the limit that one step, a guard band below the limit, accepts. The thresholds
+/// lie within 20 mV of the limit.
 fn conformity(parts: u64) -> Figure {
     let mut dice = Dice::new(1);
     let (mut beyond, mut accepted) = (0, 0);

@@ -12,13 +12,13 @@ pub const LAST_DROPS: usize = 2;
 /// Averaging time of the reading that shows whether a leakage has settled, periods of the mains.
 const BRIEF: f64 = 0.1;
 
-/// Returns the standard uncertainty of an applied or measured value: gain and offset, without noise.
+/// Returns the standard uncertainty of an applied or measured value, in its unit: gain and offset, without noise.
 pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
     rectangular(accuracy.gain(value)).hypot(rectangular(accuracy.offset))
 }
 
-/// Returns the budget of a current in multiples of `unit_a` amperes. `moved` is the difference of two readings one after
-/// the other, A, which shows how far the current has settled.
+/// Returns the budget of a current in multiples of `unit_a` amperes. `moved` is the difference of two successive
+/// readings, A, which bounds what has yet to settle.
 pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Budget {
     let meter = &range.meter;
     Budget::default()

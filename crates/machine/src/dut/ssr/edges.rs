@@ -44,9 +44,10 @@ pub struct Edges {
     pub rise: Crossing,
     /// Fall of the control to half of its height.
     pub fall: Crossing,
-    /// The load at 90 % of its voltage; none when it is not there before the pulse ends.
+    /// Rise of the load to 90 % of its voltage; `None` when the load does not reach it before the pulse ends.
     pub on: Option<Crossing>,
-    /// The load at 10 % of its voltage; none when it is not there at the end of the record, or was never on.
+    /// Fall of the load to 10 % of its voltage; `None` when the load does not reach it before the end of the record, or
+    /// was never on.
     pub off: Option<Crossing>,
 }
 

@@ -47,7 +47,7 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// Returns the last of two readings one after the other, and how far it is from the first.
+    /// Returns the second of two readings, and its difference from the first.
     ///
     /// # Errors
     /// Fails unless the program has delivered two numbers.

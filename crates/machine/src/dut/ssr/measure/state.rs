@@ -108,8 +108,8 @@ fn ac_of(plan: &Plan) -> &AcPlan {
 }
 
 impl State {
-    /// Returns the query that prepares the pulses at the control input; none when they are prepared already. The pulse
-    /// source begins only at its trigger.
+    /// Returns the query that prepares the pulses at the control input; `None` when the source already holds them. The
+    /// pulse source begins only at its trigger.
     pub fn prepare_pulses(&mut self, plan: &Plan, points: &Points) -> Option<Query> {
         if std::mem::replace(&mut self.pulses, Pulses::Ready) == Pulses::Ready {
             return None;
@@ -176,7 +176,7 @@ impl State {
         }
     }
 
-    /// Concludes from the readings of a stage.
+    /// Draws the conclusions of a stage from its readings; returns the stage that follows.
     pub fn conclude(
         &mut self,
         stage: Stage,

@@ -182,7 +182,8 @@ pub fn void(device: &Device, order: &BatchOrder, why: Option<Ended>) -> Vec<Sock
     order.sockets.iter().map(one).collect()
 }
 
-/// Takes the resistance before heating; the mean with that of the closure that the pulses have met, if it is another one.
+/// Stores the contact resistance: that before heating, or its mean with the resistance that pulses have met at another
+/// closure of the contact.
 fn contact(
     record: &mut TestRecord,
     found: Option<&Found>,

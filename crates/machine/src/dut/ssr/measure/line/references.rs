@@ -138,7 +138,7 @@ pub fn acts(
     acts
 }
 
-/// Concludes a reference. After the last one all of them are valid from `now` on.
+/// Concludes a reference. After the last one, the corrections by all references are valid from `now` on.
 pub fn conclude(
     state: &mut State,
     reference: Reference,
