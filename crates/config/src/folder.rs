@@ -97,7 +97,8 @@ impl Folder {
         }
     }
 
-    /// Reads and parses a file; `expected` describes its content in the message that it cannot be read.
+    /// Reads and parses a file. When the file cannot be read, the message states `expected`, the content that the file
+    /// should have.
     pub(super) fn file(&self, name: &str, expected: &'static str) -> Result<File, ConfigError> {
         self.check_exists()?;
         let file = self.path(name);

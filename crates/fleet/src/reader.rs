@@ -34,7 +34,7 @@ pub struct Reader {
     runtime: Runtime,
     link: Link,
     scope: Scope,
-    /// Cursors opened so far.
+    /// Number of cursors opened so far.
     cursors: AtomicU32,
 }
 

@@ -1,4 +1,4 @@
-//! How a target stands: what it lacks, whether it takes this file, whether the clocks agree.
+//! State of a target database: what it lacks, whether it takes this file, whether the clocks agree.
 
 use crate::error::Result;
 use crate::handshake::next_step;

@@ -74,7 +74,7 @@ pub enum PlanError {
     /// A demand names an element that the assembly does not have.
     #[error("{demand}: found {found:?}, expected the id of an element")]
     UnknownId {
-        /// The demand.
+        /// Name of the demand.
         demand: &'static str,
         /// Id found.
         found: String,

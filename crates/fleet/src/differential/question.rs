@@ -149,7 +149,7 @@ fn orders(draw: &mut Draw) -> OrderChoice {
     }
 }
 
-/// Returns the page settings, which have no clock.
+/// Returns settings for printed pages without a time of printing, so that two prints are equal.
 fn sheet() -> Paper {
     Paper {
         language: Lang::En,

@@ -204,7 +204,7 @@ fn contact(
     }
 }
 
-/// Where a part was: what the certificate of the rig says about its temperature.
+/// Socket of a part, with the certificate that corrects temperatures there.
 pub struct Site<'a> {
     certificate: Option<&'a Certificate>,
     /// Place of the socket in the order of the numbers, from 0.
@@ -223,7 +223,7 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// Returns the temperatures of the part, which the estimate states as readings of the reference thermometer.
+    /// Converts an estimate from readings of the reference thermometer to temperatures of the part at its socket.
     pub fn corrected(&self, found: Estimate) -> Estimate {
         let correct = |it: Value| Value {
             value: self.certificate.map_or(it.value, |of_rack| {
