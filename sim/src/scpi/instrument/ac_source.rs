@@ -53,7 +53,8 @@ pub(super) struct AcSource {
     body: Body,
     job: Option<Window>,
     last: Option<Window>,
-    /// Instant at which the output switches off after a command: the programmed phase.
+    /// Instant at which the output switches off after the command to do so: when the voltage reaches the programmed
+    /// phase, microseconds.
     off_us: Option<u64>,
     /// Instant of the next check of the current while the output is on; the next field holds the squares of the last
     /// currents.

@@ -168,7 +168,7 @@ fn is_slow(device: &Device, recorded: &Recorded, part: &Switching, lot: &LotLag)
     own.is_some_and(|own| own.seconds + SENSOR_LAG_S > SLOW * (lot.seconds + SENSOR_LAG_S))
 }
 
-/// Returns the results of parts of which nothing can be said.
+/// Returns void results for all parts of a batch that ended before it could judge them.
 pub fn void(device: &Device, order: &BatchOrder, why: Option<Ended>) -> Vec<SocketResult> {
     let one = |socket: &u16| {
         let mut record = TestRecord::default();
