@@ -32,7 +32,7 @@ pub struct Pass {
 }
 
 /// A pass with the lag of the parts, which widens the stretches at its rate. [`Program::narrow`] changes both together,
-/// and never behind the approach, so that the set point keeps the temperature that it heads for.
+/// and only until the approach ends, so that a set point under way keeps its goal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Planned {
     pass: Pass,

@@ -82,7 +82,8 @@ const TABLES: [(&str, Rows); 17] = [
 /// Words of SQLite that the database does not know, with what it gets instead.
 const WORDS: [(&str, &str); 1] = [(" INDEXED BY part_time", "")];
 
-/// Returns a statement of the file in the SQL of the database, with the tables that it names, of the rigs in `scope`.
+/// Translates a statement on the tables of a file to the SQL of the database: defines each table that the statement
+/// names, with the rows of the rigs in `scope`.
 pub(crate) fn translated(sql: &str, scope: &Scope) -> String {
     let sql = WORDS
         .iter()

@@ -21,7 +21,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Makes a server with an empty database `relayrig`. Everybody on this computer may be every user.
+    /// Makes a server with an empty database `relayrig`. Everybody on this computer may log in as any user of the
+    /// database.
     ///
     /// # Errors
     /// Fails when the programs of the server are missing or do not start.

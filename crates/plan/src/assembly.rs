@@ -73,8 +73,8 @@ impl Assembly {
     ///
     /// # Errors
     /// Fails when the tolerance is out of range, an id is repeated, a body is flawed, an element reaches out of
-    /// `omega`, Omega is too large to leave, or two elements that are not `guided` overlap deeper than the contact
-    /// depth.
+    /// `omega`, Omega is so large that an element outside would exceed the coordinates of the collision core, or two
+    /// elements that are not `guided` overlap deeper than the contact depth.
     pub fn new(
         elements: Vec<Element>,
         omega: Option<Extent>,

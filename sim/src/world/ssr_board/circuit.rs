@@ -26,7 +26,8 @@ impl SsrBoard {
         self.touch();
     }
 
-    /// Returns what an instrument or probe finds at its terminals; at the pulse source that is the control input.
+    /// Returns the voltage and current that an instrument or probe finds at a terminal; [`Terminal::Pulse`] is the
+    /// control input.
     pub fn at(&self, terminal: Terminal, part: Option<&Specimen>) -> Reading {
         let part = part.and_then(Specimen::as_ssr);
         // A probe takes no current.

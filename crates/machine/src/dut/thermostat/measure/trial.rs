@@ -14,7 +14,7 @@ use chamber::watch::{Second, Watch};
 
 /// Rest between identification and oscillation, s.
 const REST_S: u32 = 120;
-/// Least power that is assumed to hold the temperature of the oscillation, 1 = full heater.
+/// Least power with which an oscillation begins around its temperature, 1 = full heater.
 const LEAST_HOLDING: f64 = 0.02;
 
 /// The experiment after its identification.
