@@ -215,7 +215,7 @@ async fn parts(
     Ok(())
 }
 
-/// Writes what became known later, reasons and curves.
+/// Writes later changes of parts, reasons and curves.
 async fn later(
     tx: &Transaction<'_>,
     base: Base,

@@ -102,7 +102,7 @@ pub fn from_trigger(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) ->
         .with_random_bounds("trigger", walk.step_s / 2.0 * 1e6)
 }
 
-/// Returns the error of the base of time over the whole train, half width, microseconds.
+/// Returns the error of the time base over the whole train, half width, microseconds.
 fn base_us(plan: &Plan, walk: &Walk) -> f64 {
     let ends_s = walk.answers.last().map_or(0.0, |it| it.pulse.end_s);
     (plan.time.gain(ends_s) + plan.time.offset) * 1e6

@@ -151,7 +151,8 @@ impl<'a> Drops<'a> {
         (periods >= 1.0).then(|| (begins_s, begins_s + periods / self.current.hz))
     }
 
-    /// Reads everything; none when there are too few samples. The channel of the drop follows up to `most_v`.
+    /// Returns the figures of the conducting output; `None` when there are too few samples. The channel of the drop
+    /// follows the voltage up to `most_v`.
     pub fn read(&self, most_v: f64) -> Option<OnState> {
         let whole = self.whole()?;
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
@@ -208,7 +209,8 @@ impl<'a> Drops<'a> {
         Some((squares / (to - from) as f64).sqrt())
     }
 
-    /// Returns the voltage of the output, from the finer channel up to its end at `most_v`.
+    /// Returns the voltage of the output, V: from the channel of the drop below `most_v`, above it from the coarser
+    /// channel.
     fn at(&self, index: usize, most_v: f64) -> f64 {
         let volts = self.volts.at(index);
         match volts.abs() < most_v {
