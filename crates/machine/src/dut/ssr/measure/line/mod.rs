@@ -2,7 +2,7 @@
 //!
 //! A contactor closes only after the mirror contacts of both have shown them open. A stage goes on only when the mirror
 //! contacts show what it has switched; else the runner skips the acts that follow, and the test ends. The loop closes
-//! only after the source has been measured at its low voltage.
+//! only after a measurement has shown that the source is at its low voltage.
 
 pub mod conforms;
 pub mod leakage;
@@ -37,11 +37,11 @@ pub enum Level {
     /// Unknown: this test has not set it.
     #[default]
     Unknown,
-    /// That of the line.
+    /// Voltage of the line.
     Line,
-    /// That of the loop, and not yet measured.
+    /// Voltage of the loop, not yet measured.
     Loop,
-    /// That of the loop, and measured.
+    /// Voltage of the loop, measured.
     LoopProven,
 }
 

@@ -153,8 +153,8 @@ pub fn conclude(
     Ok(Next::Planned)
 }
 
-/// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value of all pulses, averaged
-/// over the values that lie below it by no more than two intervals of the samples explain.
+/// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value of all pulses: the mean of
+/// the values that lie below the greatest one by no more than two intervals of the samples explain.
 fn on_found(state: &mut State, plan: &Plan, ac: &AcPlan, walk: &Walk) {
     let us = Unit::Microsecond;
     let counts =
