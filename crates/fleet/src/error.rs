@@ -199,7 +199,7 @@ pub enum FleetError {
     SchemaOlder {
         /// URL of the database, without password.
         target: String,
-        /// Step found.
+        /// Number of the schema found.
         found: i32,
         /// Step expected.
         expected: i32,

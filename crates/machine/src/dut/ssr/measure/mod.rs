@@ -178,8 +178,8 @@ impl Test {
         self.state.proof(of).or_else(|| self.proof_of_late(of))
     }
 
-    /// Returns the failure of an output that obeys at the limit of its threshold, but too late; `None` while its time at
-    /// the nominal voltage is not proven right, because then its time is to blame.
+    /// Returns the failure of a threshold at whose limit the output switches, but too late. Returns `None` unless its
+    /// time at the nominal voltage is proven right: otherwise the time fails, not the threshold.
     fn proof_of_late(&self, of: Parameter) -> Option<Judgement> {
         let (time, side) = match of {
             Parameter::TurnOffVoltage => (Parameter::TurnOffTime, Side::Low),
