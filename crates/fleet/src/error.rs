@@ -201,7 +201,7 @@ pub enum FleetError {
         target: String,
         /// Number of the schema found.
         found: i32,
-        /// Step expected.
+        /// Number of the schema that the program needs.
         expected: i32,
     },
     /// The database refuses this file.

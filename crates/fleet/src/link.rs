@@ -15,7 +15,7 @@ const CONNECT: Duration = Duration::from_secs(10);
 /// Longest time for one step; the server ends a statement a little earlier.
 const STEP: Duration = Duration::from_secs(60);
 
-/// A connection.
+/// A connection to a database that collects the histories of rigs.
 #[derive(Debug)]
 pub struct Link {
     /// Client of the library.

@@ -191,8 +191,8 @@ impl Test {
         (is_late && is_right).then_some(Judgement::Fail(side))
     }
 
-    /// Returns for each threshold whether the part obeys at its limit. Absent is a threshold within the guard band, and
-    /// one that the test has not reached.
+    /// Returns, for each threshold, true when the part switches at its limit; leaves out a threshold within the guard
+    /// band, and one that the test has not reached.
     fn conforms(&self) -> Vec<(&'static str, bool)> {
         let found = self.why_stopped().and_then(Stop::proven);
         let obeys = |of: Parameter| match self.proof(of) {
