@@ -46,7 +46,7 @@ pub trait Server: fmt::Debug + Send {
     ) -> std::result::Result<(), ServerError>;
 }
 
-/// What an archive reads.
+/// Source from which an archive reads.
 #[derive(Debug)]
 pub(crate) enum Source {
     /// The file of a rig.
