@@ -199,7 +199,7 @@ pub struct Socket {
     pub select: u8,
 }
 
-/// What the certificate of a rack states; empty without one.
+/// Certificate of a rack; all zero and empty without one.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RackCertificate {
     /// Mean error of the reference sensor, kelvin.

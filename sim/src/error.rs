@@ -20,7 +20,7 @@ pub enum SimError {
     FaultValue {
         /// Name of the fault.
         name: String,
-        /// Text after `=`.
+        /// Value from the command line, the text after `=`.
         found: String,
         /// Expected form and range.
         expected: String,

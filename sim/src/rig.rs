@@ -293,8 +293,8 @@ impl Rig {
         self.record().inject(name, number)
     }
 
-    /// Returns the record of the world, which also controls the faults of the world. Faults of lines and modules are
-    /// not part of it: they end with their windows.
+    /// Returns the record of the world, which also starts and ends the faults of the world, but not those of lines and
+    /// modules: these end with their windows.
     pub fn record(&mut self) -> &mut dyn WorldRecord {
         self.scene.record()
     }

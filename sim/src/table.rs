@@ -168,7 +168,7 @@ impl Table {
         self.entries.get(key)
     }
 
-    /// Reads the value of a key; fails without the key when `T` has no value for a missing key.
+    /// Reads the value of a key; fails when it does not fit `T`, or is missing and `T` has no value for that.
     pub fn get<T: Read>(&self, key: &'static str) -> Result<T, ConfigError> {
         match self.find(key) {
             Some(entry) => T::read(entry),

@@ -8,7 +8,7 @@ use crate::statistics::median;
 const KEPT_SD: f64 = 3.0;
 /// Least half width of a narrowed window, K.
 const LEAST_HALF_K: f64 = 0.5;
-/// Least number of temperatures from which a window is narrowed.
+/// Least number of temperatures that narrow a window.
 const LEAST_SHOWN: usize = 5;
 /// Ratio of the standard deviation of a normal quantity to its median absolute deviation.
 const SD_OF_MAD: f64 = 1.4826;
@@ -86,9 +86,9 @@ pub fn is_near_limit(value: f64, u_k: f64, limits: &[f64]) -> bool {
     limits.iter().any(|limit| (value - limit).abs() < u_k)
 }
 
-/// Returns the window of the temperatures that a pass has shown: their middle and three standard deviations to either
-/// side, inside what was expected. Returns the expected window when there are fewer than five temperatures, or when they
-/// lie outside it.
+/// Returns the window of the temperatures that a pass has shown: three standard deviations to either side of their
+/// median, inside the expected window. Returns the expected window when there are fewer than five temperatures, or when
+/// they lie outside it.
 pub fn narrowed(shown_c: &[f64], expected: Window) -> Window {
     let Some(shown) = spanned(shown_c) else {
         return expected;
@@ -103,7 +103,8 @@ pub fn narrowed(shown_c: &[f64], expected: Window) -> Window {
     }
 }
 
-/// Returns the middle of temperatures and three standard deviations to either side; `None` for fewer than five.
+/// Returns the window of three standard deviations to either side of the median of temperatures; `None` for fewer than
+/// five.
 fn spanned(shown_c: &[f64]) -> Option<Window> {
     if shown_c.len() < LEAST_SHOWN {
         return None;

@@ -7,7 +7,8 @@ use crate::ramp::{BLEND_S, Ramp, SetPoint};
 
 /// Rate between the windows, K/min.
 pub const TRAVEL_K_PER_MIN: f64 = 10.0;
-/// The set point has reached the rate of the pass this far before a window, K; the lag at that rate comes in addition.
+/// Distance before and after a window at which the set point moves at the rate of the pass, K, besides the lag at that
+/// rate.
 pub const MARGIN_K: f64 = 3.0;
 
 /// Corners of a pass, at each of which the rate blends.
@@ -27,9 +28,9 @@ pub struct Window {
 pub struct Pass {
     /// Rate within the windows, K/min.
     pub rate_k_per_min: f64,
-    /// Where parts operate.
+    /// Temperatures at which parts may operate.
     pub operate: Window,
-    /// Where parts reset.
+    /// Temperatures at which parts may reset.
     pub reset: Window,
 }
 
@@ -72,13 +73,13 @@ struct Planned {
 }
 
 impl Planned {
-    /// Returns where the air begins and ends its rise at the rate of the pass, C.
+    /// Returns the temperatures at which the air begins and ends its rise at the rate of the pass, C.
     fn rise(&self) -> [f64; 2] {
         let (Window { low_c, high_c }, reach_k) = (self.pass.operate, self.reach_k());
         [low_c - reach_k, high_c + reach_k]
     }
 
-    /// Returns where the air begins and ends its fall at the rate of the pass, C.
+    /// Returns the temperatures at which the air begins and ends its fall at the rate of the pass, C.
     fn fall(&self) -> [f64; 2] {
         let (Window { low_c, high_c }, reach_k) = (self.pass.reset, self.reach_k());
         [high_c + reach_k, low_c - reach_k]
@@ -101,11 +102,11 @@ pub struct Waiting {
 /// Phase of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
-    /// Fast, to the operate window.
+    /// At [`TRAVEL_K_PER_MIN`] to the operate window.
     Approach,
     /// Through the operate window.
     Rise,
-    /// Fast, to the reset window.
+    /// At [`TRAVEL_K_PER_MIN`] to the reset window.
     Descent,
     /// Through the reset window.
     Fall,
@@ -124,7 +125,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Starts at the present temperature; `lag_s` is the expected lag of the parts.
+    /// Starts at the present temperature; `lag_s` is the expected lag of the parts, `unload_c` the temperature after
+    /// the last pass.
     pub fn new(measured_c: f64, passes: Vec<Pass>, lag_s: f64, unload_c: f64) -> Self {
         let planned = |pass: Pass| Planned { pass, lag_s };
         let mut program = Self {

@@ -76,8 +76,8 @@ impl Ramp {
         self.now.rate_k_per_s == 0.0 && self.now.value_c == self.end_c
     }
 
-    /// Advances by a second and returns the set point. On the way to its end it waits while it leads the measured
-    /// temperature by more than [`LONGEST_LEAD_K`]; one that still has to turn back does not wait.
+    /// Advances by a second and returns the set point. On the way to its end the set point waits while it leads the
+    /// measured temperature by more than [`LONGEST_LEAD_K`]; while it still moves away from its end it does not wait.
     pub fn step(&mut self, measured_c: f64) -> SetPoint {
         let left = self.end_c - self.now.value_c;
         let lead = (self.now.value_c - measured_c) * self.now.rate_k_per_s.signum();

@@ -1,4 +1,4 @@
-//! Middle, mean and slope of samples.
+//! Median, mean and slope of samples.
 
 /// Returns the middle value, or the mean of the two middle ones; `None` without values.
 pub fn median(all: &[f64]) -> Option<f64> {

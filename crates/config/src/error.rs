@@ -50,7 +50,7 @@ pub enum ConfigError {
         found: String,
         /// Accepted values.
         expected: String,
-        /// What `expected` says in English, as a code for other languages.
+        /// The requirement of `expected` as a code, for texts in other languages.
         requirement: Box<Requirement>,
     },
     /// A file breaks a rule of the module that owns its settings, for example `scene.toml` a rule of the guard.

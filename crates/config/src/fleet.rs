@@ -19,14 +19,14 @@ pub enum TlsChoice {
     Off,
 }
 
-/// Which raw replies a database gets.
+/// Choice of the raw replies that go to a database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SampleChoice {
     /// None.
     #[default]
     None,
-    /// Those of parts that did not pass.
+    /// Raw replies of parts that did not pass.
     Rejects,
     /// All.
     All,
@@ -86,7 +86,7 @@ fn minute(text: &str) -> Option<u16> {
     Some(60 * two(hour, 24)? + two(minute, 60)?)
 }
 
-/// What `fleet.toml` says.
+/// Settings of `fleet.toml`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 pub struct FleetSettings {
     /// Name of the plant; not empty when there is a target.

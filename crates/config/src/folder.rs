@@ -97,7 +97,8 @@ impl Folder {
         }
     }
 
-    /// Reads and parses a file. `expected` says in the message about a missing file what it should hold.
+    /// Reads and parses a file. When the file cannot be read, the message states `expected`, the content that the file
+    /// should have.
     pub(super) fn file(&self, name: &str, expected: &'static str) -> Result<File, ConfigError> {
         self.check_exists()?;
         let file = self.path(name);

@@ -95,14 +95,14 @@ pub(super) enum Purpose {
     Dropped,
 }
 
-/// What an instrument still has to do to become safe.
+/// Whether an instrument is safe, or what it still has to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Safety {
     /// Nothing: no program has run since it was made safe or set up.
     Safe,
     /// A program may have left its output on.
     MayBeOn,
-    /// Its safe program is due; since when, and how many tries are left.
+    /// The safe program is due; holds the time since when, and the number of tries left.
     Due(RigTime, u8),
 }
 

@@ -1,4 +1,4 @@
-//! One turn of the rig, top to bottom:
+//! The control cycle: the one task that turns the rig; each turn goes through six phases:
 //!
 //! ```text
 //! scan -> step -> clear -> apply -> record -> publish

@@ -20,7 +20,7 @@ CREATE TEMP TABLE IF NOT EXISTS staging_event (id bigint, kind text COLLATE \"C\
   ON COMMIT DELETE ROWS;
 CREATE TEMP TABLE IF NOT EXISTS fresh (id bigint PRIMARY KEY) ON COMMIT DELETE ROWS;";
 
-/// Moves staged rows. A part that is there already brings no measurements; what differs of it becomes a change.
+/// Moves staged rows. A part that the database has already brings no measurements; its differences become a change.
 const MOVE: &str = "
 INSERT INTO relayrig.part_change SELECT s.* FROM staging_part_change AS s ON CONFLICT DO NOTHING;
 INSERT INTO relayrig.reason SELECT * FROM staging_reason ON CONFLICT DO NOTHING;
@@ -35,7 +35,7 @@ const MEASUREMENTS: &str =
 const SAMPLES: &str = "INSERT INTO relayrig.sample SELECT s.* FROM staging_sample AS s";
 const ONLY_FRESH: &str = " JOIN fresh ON fresh.id = s.part_id";
 
-/// Notes how parts that were there already differ from what the rig has now; `$1` is the event.
+/// Stores how parts that the database had already differ from those of the rig now; `$1` is the event.
 const DIFFERING: &str = "
 INSERT INTO relayrig.part_change
   SELECT $1, s.id, s.judged_at_us, s.verdict, s.bin, s.reasons, s.cycle_s, s.landed_bin, s.landed_at_us
@@ -75,13 +75,13 @@ pub(crate) async fn prepare(client: &Client) -> Result<(), Error> {
 pub(crate) struct Base(i64);
 
 impl Base {
-    /// Returns the base of a history.
+    /// Returns the base of a history, which puts its number above the lower 40 bits.
     pub(crate) fn of(history: i32) -> Self {
         assert!(history > 0, "a history without its number");
         Self(i64::from(history) << 40)
     }
 
-    /// Returns the number in the database of a row of the file.
+    /// Returns the number that a row of the file, 0 to 2^40 - 1, has in the database.
     fn number(self, row: i64) -> i64 {
         assert!((0..1 << 40).contains(&row), "row {row} of a file");
         self.0 | row
@@ -215,7 +215,7 @@ async fn parts(
     Ok(())
 }
 
-/// Writes what became known later, reasons and curves.
+/// Writes later changes of parts, reasons and curves.
 async fn later(
     tx: &Transaction<'_>,
     base: Base,

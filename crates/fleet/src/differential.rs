@@ -11,7 +11,7 @@ use history::Archive;
 use machine::dut::Recipe;
 use question::Question;
 
-/// What was asked.
+/// Result of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Asked {
     /// Number of questions.
@@ -20,7 +20,7 @@ pub struct Asked {
     pub refused: u32,
     /// Bytes of all answers.
     pub bytes: usize,
-    /// Questions with two answers, in words, with the first place where the answers differ.
+    /// Questions with different answers, in words, with the first place of the difference.
     pub different: Vec<String>,
 }
 

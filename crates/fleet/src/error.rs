@@ -20,7 +20,7 @@ pub enum Refusal {
         rig: String,
         /// Computer of the other file.
         host: String,
-        /// When the other file began.
+        /// Time at which the other file began.
         since: String,
         /// Epoch of the other file.
         epoch: i32,
@@ -35,9 +35,9 @@ pub enum Refusal {
         rig: String,
         /// Computer of the later file.
         host: String,
-        /// When it began.
+        /// Time at which the later file took over.
         since: String,
-        /// Its epoch.
+        /// Epoch of the later file.
         epoch: i32,
     },
     /// The database has more of this file than the file itself.
@@ -58,7 +58,7 @@ pub enum Refusal {
         /// Parts of this run there.
         parts: i64,
     },
-    /// The database has less than it confirmed.
+    /// The database has fewer batches than it has confirmed.
     #[error(
         "rig {rig}: the database has {there} batches of this file, but had confirmed {here}: it is an older backup or \
          another database. Run `relayrig fleet push --again`, which sends what it lacks"
@@ -92,7 +92,7 @@ pub enum FleetError {
         "{target}: found a URL that cannot be read ({why}), expected postgres://USER@HOST:PORT/DATABASE"
     )]
     Url {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// What is wrong.
         why: String,
@@ -121,7 +121,7 @@ pub enum FleetError {
          tls = \"off\" in a network of your own"
     )]
     NoTls {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
     },
     /// The database did not answer in time.
@@ -129,7 +129,7 @@ pub enum FleetError {
         "{target}: no answer in {seconds} s while {doing}. {}{}", Remedy::Network.text(), queue(*.queued)
     )]
     TimeOut {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// What the program was doing.
         doing: &'static str,
@@ -141,7 +141,7 @@ pub enum FleetError {
     /// The database said no, or the connection broke.
     #[error("{target}: {said} (while {doing}). {}{}", .remedy.text(), queue(*.queued))]
     Database {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// What the program was doing.
         doing: &'static str,
@@ -159,9 +159,9 @@ pub enum FleetError {
         "{target}: found rigs of the plant {site}, expected a database without real rigs for made-up ones"
     )]
     RealRigs {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
-        /// A plant in it.
+        /// A plant with real rigs in the database.
         site: String,
     },
     /// The program has no thread for the connection.
@@ -173,7 +173,7 @@ pub enum FleetError {
     /// No rig has this name.
     #[error("{target}: found no rig {found}, expected one of {expected}")]
     NoRig {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// Plant and rig asked for; `*` for any.
         found: String,
@@ -196,7 +196,7 @@ pub enum FleetError {
         "{target}: found no schema relayrig, expected one; run `relayrig fleet init` as its owner"
     )]
     NoSchema {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
     },
     /// A schema of this name belongs to another program.
@@ -204,7 +204,7 @@ pub enum FleetError {
         "{target}: the schema relayrig belongs to another program; name another database. It was left untouched"
     )]
     Foreign {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
     },
     /// The schema is older than this program needs.
@@ -212,17 +212,17 @@ pub enum FleetError {
         "{target}: found schema {found}, expected {expected} or later; run `relayrig fleet init` as its owner"
     )]
     SchemaOlder {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
-        /// Step found.
+        /// Number of the schema found.
         found: i32,
-        /// Step expected.
+        /// Number of the schema that the program needs.
         expected: i32,
     },
     /// The database refuses this file.
     #[error("{target}: {refusal}")]
     Refused {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// Why.
         refusal: Refusal,

@@ -11,12 +11,12 @@ pub const SITE: &str = "made-up";
 pub const VALUES: i64 = 25;
 const DOING: &str = "making up histories";
 
-/// What to make.
+/// Size of the made-up histories.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wanted {
-    /// Parts of all rigs.
+    /// Number of parts of all rigs together.
     pub parts: i64,
-    /// Rigs.
+    /// Number of rigs.
     pub rigs: i64,
     /// Time over which the parts of each rig are spread, up to now, days.
     pub days: i64,

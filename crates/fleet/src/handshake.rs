@@ -1,4 +1,4 @@
-//! What to do with a target, from what file and database know of each other. Pure.
+//! Decides the next step for a target database from what file and database know of each other, without any access.
 //!
 //! | database | file | step |
 //! |---|---|---|
@@ -12,7 +12,7 @@
 use crate::error::Refusal;
 use history::outbox::Target;
 
-/// The file that the database takes rows of a rig from.
+/// The file whose rows the database accepts for a rig.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Known {
     /// Number of this history in the database.
@@ -21,9 +21,9 @@ pub struct Known {
     pub identity: String,
     /// Epoch of the rig.
     pub epoch: i32,
-    /// Computer that began it.
+    /// Computer that began this epoch.
     pub host: String,
-    /// When it began.
+    /// Start of this epoch, as messages show it.
     pub since: String,
     /// Number and UUID of its last batch.
     pub last: Option<(i64, String)>,
@@ -31,25 +31,25 @@ pub struct Known {
     pub last_run: Option<(String, i64)>,
 }
 
-/// What the database knows.
+/// What the database knows of rig and file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Facts {
     /// The current file of the rig.
     pub current: Option<Known>,
     /// True when the database has the batch that the file confirmed last.
     pub has_confirmed: bool,
-    /// True when an earlier epoch of the rig was this file.
+    /// True when this file held the rig in an earlier epoch.
     pub was_ours: bool,
 }
 
-/// What comes next.
+/// The next step of a transfer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step {
     /// Register the file as the first one of the rig.
     Begin,
     /// Send the next batch.
     Send,
-    /// The pending batch has arrived: confirm it first.
+    /// The pending batch, with this UUID, has arrived: confirm it first.
     Confirm(String),
 }
 

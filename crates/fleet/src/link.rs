@@ -15,12 +15,12 @@ const CONNECT: Duration = Duration::from_secs(10);
 /// Longest time for one step; the server ends a statement a little earlier.
 const STEP: Duration = Duration::from_secs(60);
 
-/// A connection.
+/// A connection to a database that collects the histories of rigs.
 #[derive(Debug)]
 pub struct Link {
     /// Client of the library.
     pub(crate) client: Client,
-    /// Database, as messages name it: without password.
+    /// URL of the database without password, as messages name it.
     pub(crate) target: String,
     /// Longest time for one step.
     patience: Duration,

@@ -1,10 +1,10 @@
-//! Passwords from a password file of PostgreSQL, one `host:port:database:user:password` a line.
+//! Reads passwords from a password file of PostgreSQL, which has one `host:port:database:user:password` a line.
 
 use crate::error::{FleetError, Result};
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 
-/// Where a password file may be.
+/// Path of a password file, which need not exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PasswordFile(PathBuf);
 

@@ -12,8 +12,8 @@ use tokio_postgres::types::ToSql;
 /// Sends until the database lacks nothing, or until `stop` returns true between two batches.
 ///
 /// # Errors
-/// Fails when the database refuses the file or cannot be reached. Batches committed before stay; what else was to be
-/// sent stays in the queue.
+/// Fails when the database refuses the file or cannot be reached. The database keeps the batches committed before; the
+/// other rows stay in the queue.
 pub async fn push(
     outbox: &mut Outbox,
     fleet: &FleetSettings,
@@ -27,7 +27,7 @@ pub async fn push(
     sent.await.map_err(FleetError::while_sending)
 }
 
-/// Sends everything again, after the database has lost rows; it keeps what it has.
+/// Queues every row again, after the database has lost rows; the database keeps what it has.
 ///
 /// # Errors
 /// Fails when the database cannot be reached, or another file sends under the name of this rig.
@@ -50,7 +50,7 @@ pub async fn start_again(
     Ok(outbox.restart(&target.url, &Restart::Again { last })?)
 }
 
-/// Makes this file the current one of its rig, as a new epoch. Sends those runs that the database lacks.
+/// Makes this file the current one of its rig, as a new epoch. Queues the runs that the database lacks.
 ///
 /// # Errors
 /// Fails when the database cannot be reached.

@@ -1,4 +1,4 @@
-//! Sends in the background, in a thread of its own for each database. The rig never waits for it.
+//! Sends rows in the background, in a thread of its own for each database; the rig never waits for a database.
 
 use crate::error::Result;
 use crate::sender::Sender;
@@ -13,27 +13,27 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Pause after everything was sent.
+/// Pause after the queue is empty.
 const PAUSE: Duration = Duration::from_secs(1);
 /// Longest pause after a failure; it begins at [`PAUSE`] and doubles.
 const LONGEST_PAUSE: Duration = Duration::from_secs(60);
-/// Longest time for which the end of the program waits for rows that are still queued.
+/// Longest time for which the end of the program waits for queued rows.
 const LAST_ROWS: Duration = Duration::from_secs(5);
 
-/// How a database stands, for page, metrics and alarm.
+/// State of a database, for page, metrics and alarm: what it lacks, and the last error.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TargetState {
-    /// Database, without password.
+    /// URL of the database, without password.
     pub url: String,
-    /// Parts that it lacks.
+    /// Number of parts that the database lacks.
     pub lag_parts: u64,
-    /// Seconds since the judgement of the oldest of them; 0 when it lacks none.
+    /// Time since the judgement of the oldest part that the database lacks, s; 0 when it lacks none.
     pub lag_s: f64,
     /// Age at which an alarm is due, seconds.
     pub alarm_after_s: u32,
     /// Why the last attempt failed; `None` after one that succeeded.
     pub last_error: Option<String>,
-    /// Parts sent since the program began.
+    /// Number of parts sent since the program began.
     pub sent_parts: u64,
 }
 
@@ -45,10 +45,10 @@ impl TargetState {
     }
 }
 
-/// Receives how the databases stand after each attempt.
+/// Receives the states of all databases after each attempt.
 pub type Told = Box<dyn Fn(&[TargetState]) + Send + Sync>;
 
-/// Sends to all databases until it is dropped. Dropping waits at most [`LAST_ROWS`] for what is still queued.
+/// Sends to all databases until it is dropped; the drop waits at most [`LAST_ROWS`] for queued rows.
 pub struct Pusher {
     shared: Arc<Shared>,
     threads: Vec<JoinHandle<()>>,
@@ -80,7 +80,7 @@ impl Shared {
 }
 
 impl Pusher {
-    /// Starts a thread for each database of `fleet`. `told` is called on these threads.
+    /// Starts a thread for each database of `fleet`. These threads call `told`.
     #[must_use]
     pub fn start(fleet: &FleetSettings, db: PathBuf, told: Told) -> Self {
         let state = |it: &FleetTarget| TargetState {

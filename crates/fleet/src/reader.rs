@@ -20,7 +20,7 @@ const DOING: &str = "asking";
 /// Rows of one page.
 const PAGE: usize = 1000;
 
-/// Which rigs answer; a member that is absent selects all.
+/// Selection of the rigs that answer; an absent member selects all.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Rigs {
     /// Name of the plant.
@@ -36,7 +36,7 @@ pub struct Reader {
     runtime: Option<Runtime>,
     link: Link,
     scope: Scope,
-    /// Cursors opened so far.
+    /// Number of cursors opened so far.
     cursors: AtomicU32,
 }
 

@@ -1,11 +1,11 @@
-//! Makes the schema, or brings it to that of this program.
+//! Makes the schema of this program in a database, or brings an older one up to date.
 
 use crate::error::{FleetError, Result};
 use crate::link::Link;
 use config::FleetTarget;
 
-/// Step `n` brings schema `n` to `n + 1`. Existing steps never change, and a step only adds, so that older rigs keep
-/// working.
+/// Steps from one schema to the next: the first one makes schema 1. Existing steps never change, and a step only adds,
+/// so that older rigs keep working.
 const STEPS: [&str; 2] = [include_str!("schema/v1.sql"), include_str!("schema/v2.sql")];
 
 /// Views and rights, which every set-up makes anew.
@@ -17,19 +17,19 @@ pub const SCHEMA: i32 = STEPS.len() as i32;
 /// Months for which a set-up makes partitions ahead; rigs make a missing one themselves.
 pub const MONTHS_AHEAD: i64 = 24;
 
-/// What a set-up did.
+/// Result of a set-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setup {
-    /// Schema before; 0 for none.
+    /// Number of the schema before; 0 for none.
     pub from: i32,
-    /// Schema now.
+    /// Number of the schema now.
     pub to: i32,
-    /// Partitions made.
+    /// Number of partitions made.
     pub partitions: i32,
 }
 
-/// Makes the schema `relayrig` with its roles and partitions, in one transaction. The second time, does only what is
-/// missing; leaves the views of a newer schema alone.
+/// Makes the schema `relayrig` with its roles and partitions, in one transaction. In an existing schema, adds only
+/// missing steps and partitions; leaves the views of a newer schema alone.
 ///
 /// # Errors
 /// Fails when the schema belongs to another program, and when the user may not make schemas or roles; then nothing has

@@ -1,4 +1,4 @@
-//! How a target stands: what it lacks, whether it takes this file, whether the clocks agree.
+//! State of a target database: what it lacks, whether it takes this file, whether the clocks agree.
 
 use crate::error::Result;
 use crate::handshake::next_step;
@@ -16,25 +16,25 @@ const AHEAD: i64 = 3;
 /// Answer of a database.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// Database.
+    /// URL of the database, without password.
     pub url: String,
-    /// Step of its schema.
+    /// Number of the schema in the database.
     pub schema: i32,
-    /// Parts of this rig in it, of all epochs.
+    /// Number of parts of this rig in the database, of all epochs.
     pub parts: i64,
-    /// Rigs in it.
+    /// Number of rigs in the database.
     pub rigs: i64,
-    /// Entries of the queue that it lacks.
+    /// Number of entries of the queue that the database lacks.
     pub lag_entries: u64,
-    /// Parts that it lacks.
+    /// Number of parts that the database lacks.
     pub lag_parts: u64,
-    /// Seconds since the judgement of the oldest of them; 0 when it lacks none.
+    /// Time since the judgement of the oldest part that the database lacks, s; 0 when it lacks none.
     pub lag_s: f64,
-    /// Clock of this computer minus that of the server, seconds.
+    /// Clock of this computer minus that of the server, s.
     pub clock_ahead_s: f64,
-    /// Months from now that have partitions.
+    /// Number of months from now that have partitions.
     pub months_ahead: i64,
-    /// What is wrong and what to do.
+    /// Faults with their remedies, one a text.
     pub faults: Vec<String>,
 }
 

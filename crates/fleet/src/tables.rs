@@ -17,14 +17,14 @@ enum Rows {
     Common(&'static str),
     /// A statement that ends with its conditions, the column with the number of the history, and the grouping.
     OfRigs(&'static str, &'static str, &'static str),
-    /// The last event of each row of the kind that has the name of the table; columns of `it`.
+    /// For each row of the file, its last event of the kind that has the name of the table; the text lists the columns.
     Events(&'static str),
 }
 
 use Rows::{Common, Events, OfRigs};
 
-/// The parts as they are now. Few parts were judged otherwise after they were sent; the other changes are looked up only for a
-/// question that needs them.
+/// The parts as they are now. Few parts get another verdict after they were sent, so a join finds these; a subquery
+/// finds any other change, and runs only for a question that needs it.
 const PARTS: &str = "SELECT it.id, it.history_id, it.run_id, it.kind, it.seq, it.serial, it.judged_at_us, it.test_s,
       coalesce(other.verdict, it.verdict) AS verdict,
       CASE WHEN other.event IS NULL THEN it.bin ELSE other.bin END AS bin,
@@ -39,7 +39,7 @@ const PARTS: &str = "SELECT it.id, it.history_id, it.run_id, it.kind, it.seq, it
       FROM relayrig.part_rejudged AS later WHERE later.part_id = other.part_id AND later.event > other.event)
     WHERE true";
 
-/// Every table of the file that questions name. Lots of one name are one lot, whatever the rig.
+/// Every table of the file that questions name. Lots of several rigs with one name count as one lot.
 const TABLES: [(&str, Rows); 17] = [
     ("parameter", Common("SELECT id, key, meaning FROM relayrig.parameter")),
     ("recipe", Common("SELECT hash AS id, hash, name, body, first_used_us FROM relayrig.recipe")),
@@ -82,7 +82,8 @@ const TABLES: [(&str, Rows); 17] = [
 /// Words of SQLite that the database does not know, with what it gets instead.
 const WORDS: [(&str, &str); 1] = [(" INDEXED BY part_time", "")];
 
-/// Returns a statement of the file in the SQL of the database, with the tables that it names, of the rigs in `scope`.
+/// Translates a statement on the tables of a file to the SQL of the database: defines each table that the statement
+/// names, with the rows of the rigs in `scope`.
 pub(crate) fn translated(sql: &str, scope: &Scope) -> String {
     let sql = WORDS
         .iter()

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Longest wait for the server, seconds.
 const START_S: u64 = 60;
 
-/// A running server; it stops when this value is dropped, and its data go.
+/// A running server; the drop of this value stops the server and deletes its data.
 #[derive(Debug)]
 pub struct Trial {
     bin: PathBuf,
@@ -21,7 +21,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Makes a server with an empty database `relayrig`. Everybody on this computer may be every user.
+    /// Makes a server with an empty database `relayrig`. Everybody on this computer may log in as any user of the
+    /// database.
     ///
     /// # Errors
     /// Fails when the programs of the server are missing or do not start.
@@ -174,7 +175,7 @@ fn is_root() -> bool {
 /// Runs a command to its end.
 ///
 /// # Errors
-/// Fails when it cannot be started, and with what it said when it failed.
+/// Fails when the command does not start, and with its output on stderr when it ends with an error.
 pub fn done(command: &mut Command) -> Result<Output> {
     let output = command.output()?;
     match output.status.success() {

@@ -1,4 +1,4 @@
-//! Values of a history file as those of the database, both ways.
+//! Converts values of a history file to those of the database, and back.
 
 use bytes::BytesMut;
 use history::Value;

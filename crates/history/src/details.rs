@@ -1,5 +1,5 @@
-//! What belongs to parts that were found, read for many parts at once: their runs, values and reasons; and for single parts
-//! all attempts with their samples and curves.
+//! Completes the parts that a query has found: reads runs, values and reasons of many parts at once, and for single
+//! parts all attempts with their samples and curves.
 
 use super::reasons::REASONS;
 use super::source::{Dialect, Read};

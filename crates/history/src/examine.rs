@@ -7,7 +7,7 @@ use super::{Archive, CalibrationRecord, SCHEMA, open};
 use rusqlite::OptionalExtension;
 use std::path::Path;
 
-/// Facts about a history whose pages are whole.
+/// Facts about a history, read after a check that no page of its file is damaged.
 #[derive(Debug)]
 pub struct Examination {
     /// Schema of the file, from 1 to [`SCHEMA`]; 0 for an empty file.

@@ -100,7 +100,7 @@ pub(super) fn alarm(tx: &Transaction<'_>, row_ids: &RowIds, it: &AlarmRecord) ->
     insert_alarm(tx, run, it)
 }
 
-/// Does the work of [`alarm`] for the run in row `run`.
+/// Inserts an alarm as [`alarm`] does, for the run with this row number; `None` for an alarm between runs.
 pub(super) fn insert_alarm(tx: &Transaction<'_>, run: Option<i64>, it: &AlarmRecord) -> Result<()> {
     assert!(!it.code.is_empty(), "an alarm without a code");
     let cleared_after = it.cleared_at_us.is_none_or(|at| at >= it.raised_at_us);

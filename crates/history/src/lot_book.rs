@@ -20,7 +20,7 @@ pub struct LotEntry {
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,
-    /// Text of the cause, Chinese; `None` when this version has none.
+    /// Text of the cause, Chinese; `None` when the program has no text for this code.
     pub cause_text_zh: Option<String>,
     /// Decisions to open the complete lot again.
     pub reopenings: Vec<Reopening>,

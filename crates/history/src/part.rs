@@ -37,7 +37,7 @@ pub struct Part {
     pub landed_at: Option<Moment>,
     /// Reasons why the part did not pass, as texts.
     pub reasons: Vec<String>,
-    /// The same `reasons` as codes.
+    /// Reasons why the part did not pass, as codes.
     pub reason_codes: Vec<Reason>,
     /// Time of the verdict.
     pub time: Moment,

@@ -1,8 +1,9 @@
 //! Where an archive reads: the file of one rig, or a server that holds the histories of many rigs.
 //!
-//! A question is one text in the SQL of the file, and one reading of its rows. A [`Server`] knows the tables of the file by
-//! their names and translates the text. SQL selects and orders; all arithmetic is done in Rust, so that both give the same
-//! figures to the last digit. Where the same question needs another way to its rows, [`Dialect`] says so.
+//! A question is one text in the SQL of the file, and one reading of its rows. A [`Server`] knows the tables of the
+//! file by their names and translates the text. SQL selects and orders; Rust does all arithmetic, so that both give the
+//! same figures to the last digit. Where file and server store rows in different ways, the text of a question depends
+//! on [`Dialect`].
 
 use super::error::{HistoryError, Result};
 pub use rusqlite::types::Value;
@@ -45,7 +46,7 @@ pub trait Server: fmt::Debug + Send {
     ) -> std::result::Result<(), ServerError>;
 }
 
-/// What an archive reads.
+/// Source from which an archive reads.
 #[derive(Debug)]
 pub(crate) enum Source {
     /// The file of a rig.
@@ -54,7 +55,7 @@ pub(crate) enum Source {
     Server(Box<dyn Server>),
 }
 
-/// The way to the rows of a question.
+/// How a source stores the rows of a question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Dialect {
     /// SQLite, one rig. Values carry the verdict of their part, and packed copies of closed runs.

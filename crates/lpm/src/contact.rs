@@ -109,7 +109,8 @@ impl Findings<'_> {
         Self::into(wanted, Vec::new())
     }
 
-    /// Makes the same search, which lists elements in `met`; `met` must be empty. Questions can so share its memory.
+    /// Starts with no contact found, and lists elements in `met`, which must be empty: so several questions share its
+    /// memory.
     #[inline]
     pub(crate) fn into(wanted: Wanted, met: Vec<ElementKey>) -> Self {
         Findings {

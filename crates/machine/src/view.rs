@@ -80,20 +80,20 @@ pub struct View {
     pub fleet: Vec<FleetView>,
 }
 
-/// How a database of `fleet.toml` stands.
+/// State of a database of `fleet.toml`: what it lacks, and the last error.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct FleetView {
-    /// Database, without password.
+    /// URL of the database, without password.
     pub url: String,
-    /// Parts that it lacks.
+    /// Number of parts that the database lacks.
     pub lag_parts: u64,
-    /// Seconds since the judgement of the oldest of them; 0 when it lacks none.
+    /// Time since the judgement of the oldest part that the database lacks, s; 0 when it lacks none.
     pub lag_s: f64,
-    /// True when it lacks a part for longer than `alarm_after_s` of `fleet.toml`.
+    /// True when the database lacks a part for longer than `alarm_after_s` of `fleet.toml`.
     pub late: bool,
     /// Why the last attempt to send failed, with the remedy; null after one that succeeded.
     pub last_error: Option<String>,
-    /// Parts sent since the program began.
+    /// Number of parts sent since the program began.
     pub sent_parts: u64,
 }
 
@@ -232,7 +232,7 @@ pub struct InstrumentView {
     pub profile: String,
     /// Address of its link.
     pub link: String,
-    /// Its answer to `*IDN?`; null before the first answer.
+    /// Answer of the instrument to `*IDN?`; null before the first answer.
     pub identity: Option<String>,
     /// Programs that have begun, safe programs included.
     pub programs: u64,

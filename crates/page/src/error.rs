@@ -94,7 +94,7 @@ pub(super) struct Refusal {
     error: String,
     /// The reason as a sentence, English.
     reason: String,
-    /// The same in Chinese.
+    /// The reason as a sentence, Chinese.
     reason_zh: String,
     /// The reason as a code.
     code: String,

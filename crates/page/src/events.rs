@@ -111,8 +111,8 @@ impl Feed {
     }
 }
 
-/// Waits until a view is due after the view `sent` that was sent at `at`: [`PACE`] after `at` a view that differs from
-/// `sent` is due, [`BEAT`] after `at` any new view. Never resolves after the sender of views has gone.
+/// Waits until the next view is due after the view `sent`, which went out at `at`: a view that differs from `sent` is
+/// due [`PACE`] after `at`, any other new view [`BEAT`] after `at`. Never resolves after the sender of views has gone.
 async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View) {
     sleep_until(at + PACE).await;
     while views.changed().await.is_ok() {

@@ -29,7 +29,7 @@ pub const WAITING: usize = 16;
 pub(super) struct Accepted {
     /// Word of the order.
     order: String,
-    /// What the person should know about the outcome.
+    /// Remark about the outcome for the person who gave the order.
     #[serde(skip_serializing_if = "Option::is_none")]
     remark: Option<Message>,
 }

@@ -1,4 +1,4 @@
-//! The page. The answer to `GET /` holds everything that the operator's page needs; the script of any other page
+//! Serves the page: the answer to `GET /` holds everything that the operator's page needs; the script of any other page
 //! follows when a browser first opens that page. Nothing comes from another host.
 //!
 //! The program makes and compresses each answer once, from the files in `page/` and the catalogue of texts. The content

@@ -18,11 +18,12 @@ pub struct Element {
     pub pose: Pose,
 }
 
-/// What counts as contact.
+/// Tolerances of contacts and mates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// Depth by which two elements may press into each other and still slide, mm: above 0, at most 1. Everything that
-    /// presses deeper blocks. Two bodies thinner than the depth are kept at 1e-3 mm.
+    /// presses deeper blocks. A body thinner than the depth keeps a core of 2e-3 mm, or its own thickness where that is
+    /// less.
     pub contact_mm: f64,
     /// Gap up to which two elements count as mated, mm: 0 to 10.
     pub mate_mm: f64,
@@ -72,8 +73,8 @@ impl Assembly {
     ///
     /// # Errors
     /// Fails when the tolerance is out of range, an id is repeated, a body is flawed, an element reaches out of
-    /// `omega`, Omega is too large to leave, or two elements that are not `guided` overlap deeper than the contact
-    /// depth.
+    /// `omega`, Omega is so large that an element outside would exceed the coordinates of the collision core, or two
+    /// elements that are not `guided` overlap deeper than the contact depth.
     pub fn new(
         elements: Vec<Element>,
         omega: Option<Extent>,
@@ -196,7 +197,7 @@ impl Assembly {
         &self.model
     }
 
-    /// Returns what is subtracted from every position in the model, mm.
+    /// Returns the origin of the model in the frame of the assembly, mm.
     pub(crate) fn origin(&self) -> [f64; 3] {
         self.origin
     }
@@ -219,7 +220,7 @@ impl Assembly {
     }
 
     /// Returns the elements that an element meets on a straight way that begins at `from` (a displacement from its
-    /// place, mm), in the order of their numbers. Guided pairs are left out.
+    /// place, mm), in the order of their numbers. Leaves out elements that guide it, or that it guides.
     ///
     /// # Errors
     /// Fails when the collision core cannot decide the move.

@@ -9,17 +9,17 @@ use crate::problem::{Problem, Taken};
 use crate::remaining::Remaining;
 use std::collections::HashSet;
 
-/// Work that a level may cause, in rows of the dynamic table; bounds the states that are kept.
+/// Work that a level may cause, in rows of the dynamic table; bounds the states that the search keeps.
 const WORK_OF_A_LEVEL: usize = 400_000;
 
-/// Most states of a level.
+/// Most states that the search keeps on one level.
 const MOST_STATES: usize = 4096;
 
 /// An order with few changes of direction.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FewChanges {
     pub(crate) order: Vec<Taken>,
-    /// True when no order has fewer changes; false when states had to be dropped.
+    /// True when no order has fewer changes; false when the search has dropped states and may have missed one.
     pub(crate) is_proven: bool,
 }
 
@@ -32,14 +32,14 @@ struct Node<'a> {
 }
 
 impl Node<'_> {
-    /// Goes on straight in one direction.
+    /// Takes off, one after another, all units that can leave in this direction.
     fn along(mut self, direction: Direction) -> Self {
         self.order.extend(self.remaining.remove_along(direction));
         self.last = Some(direction);
         self
     }
 
-    /// Takes a way with two legs, then goes on in the direction of its last leg.
+    /// Takes off a unit by a way with two legs, then all units that can leave in the direction of its last leg.
     fn by(mut self, taken: Taken, last: Direction) -> Self {
         self.remaining.remove(taken.unit, |_| {});
         self.order.push(taken);
@@ -47,7 +47,7 @@ impl Node<'_> {
     }
 }
 
-/// Returns an order in which every unit that has to leave does, with the fewest changes found; `None` when units are
+/// Returns an order in which every unit leaves that has to, with the fewest changes found; `None` when units are
 /// locked.
 pub(crate) fn fewest_changes(problem: &Problem) -> Option<FewChanges> {
     let mut all = Remaining::all(problem);

@@ -1,8 +1,8 @@
-//! Changes from one assembly to another: what stays, goes and comes, in order.
+//! Plans the change from one assembly to another: what stays, goes and comes, in order.
 //!
 //! An element with the same id, shape and place in both assemblies stays, unless it must come off for a while so that
-//! others can go or come. Whatever comes off one assembly for that reason comes off the other one too; the two sides are
-//! planned in turns until they agree.
+//! others can go or come. An element that comes off one assembly for that reason comes off the other one too; the
+//! planner plans the two sides in turns until they agree.
 
 use crate::assembly::{Assembly, Element};
 use crate::demands::Demands;
@@ -22,13 +22,14 @@ pub struct Changeover {
     pub comes: Vec<String>,
     /// Ids that come off for a while and go back to their place, sorted.
     pub returns: Vec<String>,
-    /// Disassembly of the first assembly; element numbers are those of it. Empty when nothing comes off.
+    /// Disassembly of the first assembly, with its element numbers; `None` when nothing comes off.
     pub off: Option<Sequence>,
-    /// Disassembly of the second assembly, whose reverse brings it together; element numbers are those of it.
+    /// Disassembly of the second assembly; its reverse puts this assembly together. Element numbers are those of the
+    /// second assembly.
     pub on: Option<Sequence>,
 }
 
-/// What a changeover ends with.
+/// Result of planning a changeover.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Planned {
     /// An order exists.

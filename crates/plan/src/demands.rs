@@ -15,7 +15,8 @@ pub struct Demands {
     pub groups: Vec<Vec<String>>,
     /// Directions in which nothing may leave, such as the side on which the operator stands.
     pub forbidden: Vec<Direction>,
-    /// True when only straight ways and single units are wanted: no ways of two steps, no subassemblies that are found.
+    /// True when a plan takes straight ways and given units only: no ways of two steps, no subassemblies that the
+    /// planner finds.
     pub straight_only: bool,
     /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element rests
     /// on what holds it from below. Two that hold each other from below, such as a rod in its cylinder, do not rest on
@@ -27,14 +28,15 @@ pub struct Demands {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Resolved {
     pub(crate) remove: Vec<usize>,
-    /// By element.
+    /// By element: true when it stays.
     pub(crate) stays: Vec<bool>,
     pub(crate) groups: Vec<Vec<usize>>,
     pub(crate) allowed: Vec<Direction>,
 }
 
 impl Demands {
-    /// Finds the elements that the demands name.
+    /// Finds the elements that the demands name. Fails when an id names no element, when two demands contradict each
+    /// other, and when no direction is left.
     pub(crate) fn resolved(&self, assembly: &Assembly) -> Result<Resolved, PlanError> {
         let remove = all(assembly, &self.remove, "remove")?;
         let stay = all(assembly, &self.stay, "stay")?;

@@ -1,4 +1,4 @@
-//! What can be wrong with an assembly or a demand.
+//! Errors of an assembly or a demand.
 
 use crate::extent::Extent;
 
@@ -21,12 +21,12 @@ pub enum PlanError {
         /// The id.
         found: String,
     },
-    /// A body or its pose is refused by the collision core.
+    /// The collision core refuses a body or its pose.
     #[error("element {id:?}: {flaw}")]
     Flawed {
         /// Id of the element.
         id: String,
-        /// What is wrong with it.
+        /// Flaw of its body or pose.
         flaw: lpm::Flaw,
     },
     /// An element reaches out of the space in which the plan is made.
@@ -74,7 +74,7 @@ pub enum PlanError {
     /// A demand names an element that the assembly does not have.
     #[error("{demand}: found {found:?}, expected the id of an element")]
     UnknownId {
-        /// The demand.
+        /// Name of the demand.
         demand: &'static str,
         /// Id found.
         found: String,

@@ -1,24 +1,25 @@
 //! The sequence of the paper: the direction that frees most comes first.
 //!
-//! Priority directions are tried before all others. Each direction is used once: it is left when nothing more leaves in
-//! it. The rule can end with elements in place although an order exists; the searches then take over.
+//! The rule takes priority directions before all others, and each direction once, until nothing more leaves in it. The
+//! rule can end with elements in place although an order exists; the searches then take over.
 
 use crate::direction::Direction;
 use crate::problem::{Problem, Taken};
 use crate::remaining::Remaining;
 
-/// What the rule of the paper gives.
+/// Result of the rule of the paper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Greedy {
     /// Units that leave, in their order.
     pub order: Vec<Taken>,
     /// Directions in the order of their use.
     pub directions: Vec<Direction>,
-    /// Number of units that are left where the rule is stuck.
+    /// Number of units that must leave but are still in place when the rule ends.
     pub left: usize,
 }
 
-/// Applies the rule: priority directions first, then the others, each once and the one that frees most first.
+/// Applies the rule to the priority directions, then to the others: it takes next the direction in which most units can
+/// leave, and takes each direction once.
 pub fn greedy(problem: &Problem, priority: &[Direction]) -> Greedy {
     let mut remaining = Remaining::all(problem);
     let mut done = Greedy {

@@ -14,7 +14,7 @@ const MOST_PASSES: usize = 4;
 #[derive(Clone, Copy)]
 struct Placed {
     taken: Taken,
-    /// Number of the run plus a part of 1.
+    /// Number of the run, plus the place within the run as a fraction of 1.
     at: f64,
 }
 

@@ -1,7 +1,7 @@
 //! Subassemblies: units that lock each other in place, and leave together to be taken apart on the bench.
 //!
-//! A unit leaves in a direction when everything that blocks it in this direction leaves with it, and everything that
-//! blocks those, and so on. The smallest such set that can be taken apart on its own is used.
+//! A unit can leave in a direction together with everything that blocks it in this direction, everything that blocks
+//! these blockers, and so on. The planner uses the smallest such set that can be taken apart on its own.
 
 use crate::assembly::Assembly;
 use crate::direction::Direction;
@@ -14,14 +14,14 @@ use crate::ways::Units;
 pub(crate) struct Subassembly {
     /// The units, in ascending order.
     pub(crate) units: Vec<usize>,
-    /// Their common way.
+    /// The common way of the units.
     pub(crate) leg: Leg,
-    /// The problem of taking them apart on the bench.
+    /// The problem of taking the subassembly apart on the bench.
     pub(crate) alone: Problem,
 }
 
-/// Returns the smallest subassembly that can leave as a whole although its units cannot, and that `has_order` says can
-/// be taken apart.
+/// Returns the smallest subassembly that can leave as a whole although its units cannot leave alone, and for whose
+/// problem `has_order` returns true; `None` when there is none.
 pub(crate) fn subassembly(
     assembly: &Assembly,
     units: &Units,
@@ -57,8 +57,7 @@ pub(crate) fn subassembly(
     made.find(|it| has_order(&it.alone))
 }
 
-/// Returns the unit with everything that has to leave with it in a direction; `None` when a unit that stays is among
-/// it.
+/// Returns the unit with all units that have to leave with it in a direction; `None` when one of them stays.
 fn closed(core: &Problem, unit: usize, direction: Direction) -> Option<Vec<usize>> {
     let mut found = vec![unit];
     let mut next = 0;

@@ -1,13 +1,12 @@
 //! Sets of units that lock each other, when no order exists.
 //!
-//! A set is locked when every way of every unit in it is blocked by another unit of the set or by a unit that stays.
-//! What is left after everything removable has gone is the largest locked set; a smallest one inside it says what to
-//! change.
+//! A set is locked when another unit of the set, or a unit that stays, blocks every way of every unit of the set. The
+//! largest locked set remains when everything removable has gone; a smallest locked set inside it shows what to change.
 
 use crate::problem::{Problem, Taken};
 use crate::remaining::Remaining;
 
-/// Largest set in which all smaller sets are tried.
+/// Largest set of which the search tries all smaller sets.
 const MOST_TRIED: usize = 14;
 
 /// Units that lock each other.
@@ -15,15 +14,15 @@ const MOST_TRIED: usize = 14;
 pub struct Locked {
     /// The units, in ascending order; each has to leave and none can.
     pub units: Vec<usize>,
-    /// For each unit of the set: the units of the set, and those that stay, which block its ways.
+    /// For each unit of the set: the units that block its ways; each is in the set or stays.
     pub by: Vec<Vec<usize>>,
     /// Units that can leave before the rest is stuck, in their order.
     pub removable: Vec<Taken>,
-    /// True when no smaller set is locked; false when the set only has no locked part.
+    /// True when no smaller set is locked; false when only the parts of this set are known not to be locked.
     pub is_smallest: bool,
 }
 
-/// Returns a smallest locked set; `None` when everything that has to leave can.
+/// Returns a smallest locked set; `None` when everything that has to leave can leave.
 pub fn locked(problem: &Problem) -> Option<Locked> {
     let mut remaining = Remaining::all(problem);
     let removable = remaining.remove_removable();
@@ -66,7 +65,7 @@ pub fn locked_around(problem: &Problem, unit: usize) -> Option<Locked> {
     })
 }
 
-/// Returns true when each way of each unit is blocked by another unit of the set or by a unit that stays.
+/// Returns true when another unit of the set, or a unit that stays, blocks each way of each unit.
 pub fn is_locked(problem: &Problem, units: &[usize]) -> bool {
     let is_blocked = |unit: &usize| {
         let mut ways = problem.ways(*unit).iter();

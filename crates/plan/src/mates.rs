@@ -1,10 +1,10 @@
-//! Mates: how two elements are held to each other.
+//! Mates: faces and axes by which two elements fit each other.
 //!
 //! Three kinds, as in the paper: plane on plane (normals against each other), aligned planes (normals alike), and a
-//! common axis. They are found from the geometry within [`Tolerance::mate_mm`](crate::Tolerance), or given and checked
-//! against it. Plane and axis mates appear in the local table by themselves, since the bodies block each other there;
-//! aligned planes hold nothing, and only say where an element belongs. The axes of common-axis mates are the priority
-//! directions of the paper.
+//! common axis. The library finds mates in the geometry within [`Tolerance::mate_mm`](crate::Tolerance), or checks
+//! given mates against it. Plane and axis mates appear in the local table by themselves, since the bodies block each
+//! other there; aligned planes hold nothing, and only say where an element belongs. The axes of common-axis mates are
+//! the priority directions of the paper.
 
 use crate::assembly::{Assembly, modelled};
 use crate::direction::Direction;
@@ -36,14 +36,14 @@ pub enum Kind {
     },
 }
 
-/// Two elements that are held to each other.
+/// Two elements that fit each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mate {
     /// Number of the first element, the lower one.
     pub a: usize,
     /// Number of the second element.
     pub b: usize,
-    /// How they are held.
+    /// Kind of the mate.
     pub kind: Kind,
 }
 
@@ -103,7 +103,7 @@ pub fn priority(mates: &[Mate]) -> Vec<Direction> {
     axes.into_iter().flat_map(both).collect()
 }
 
-/// Checks a given mate against the mates that were found.
+/// Checks a given mate against the mates found in the geometry.
 ///
 /// # Errors
 /// Fails when the elements have no mate of this kind within the tolerance of the assembly.

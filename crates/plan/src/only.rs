@@ -39,7 +39,7 @@ pub fn fewest(problem: &Problem, wanted: &[usize]) -> Option<Fewest> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     Unasked,
-    /// Its blockers are being removed; it is still in place.
+    /// The unit is still in place; its blockers are leaving.
     Waiting,
     Gone,
 }

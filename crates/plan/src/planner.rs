@@ -1,4 +1,4 @@
-//! From demands to a sequence, or to the set of elements that lock each other.
+//! Plans a sequence that meets demands, or finds the elements that lock each other.
 
 use crate::assembly::Assembly;
 use crate::batches::fewest_changes;
@@ -17,7 +17,7 @@ use crate::shortest::best_order;
 use crate::table::Interference;
 use crate::ways::{Units, straight, two_step};
 
-/// The tables of an assembly, from which plans are made.
+/// The interference tables of an assembly; it makes plans from them.
 #[derive(Debug, Clone)]
 pub struct Planner<'a> {
     assembly: &'a Assembly,
@@ -26,7 +26,7 @@ pub struct Planner<'a> {
     priority: Vec<Direction>,
 }
 
-/// What a plan ends with.
+/// Answer to a demand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// An order exists.
@@ -40,7 +40,7 @@ pub enum Outcome {
 pub struct LockedElements {
     /// Numbers of the elements, in ascending order.
     pub elements: Vec<usize>,
-    /// For each of them: the elements, of the set or staying, that block its ways.
+    /// For each entry of `elements`: the elements that block its ways; each of these is locked or has to stay.
     pub by: Vec<Vec<usize>>,
     /// True when no smaller set is locked.
     pub is_smallest: bool,
@@ -128,8 +128,8 @@ impl<'a> Planner<'a> {
         Problem::new(ways, leaves.collect())
     }
 
-    /// Returns the units that rest on each unit. Two units that hold each other from below are left out: neither can
-    /// wait for the other.
+    /// Returns the units that rest on each unit. Leaves out two units that hold each other from below: neither can wait
+    /// for the other.
     fn rests(&self, units: &Units) -> Vec<Vec<u32>> {
         let held = self.held_from_below(units);
         let on = |lower: usize| {
@@ -236,7 +236,7 @@ struct Making<'a> {
 pub struct Ordered {
     /// The units with their ways, in the order in which they leave.
     pub order: Vec<Taken>,
-    /// How it was found.
+    /// Method that found the order.
     pub method: Method,
     /// True when no order has fewer changes of direction.
     pub is_fewest_changes: bool,
@@ -320,8 +320,9 @@ impl Making<'_> {
     }
 }
 
-/// Returns the cheapest order found, `None` when units are locked: the best one for few units; for many, few changes and
-/// ways made shorter. The rule of the paper is kept where it is as cheap.
+/// Returns the cheapest order found; `None` when units are locked. For few units this is the best order; for many it is
+/// one with few changes of direction, whose ways a search has shortened. Prefers the order of the rule of the paper
+/// where it is as cheap.
 pub fn ordered(problem: &Problem, priority: &[Direction]) -> Option<Ordered> {
     let found = fewest_changes(problem)?;
     let (order, is_fewest_changes) = match best_order(problem) {

@@ -59,7 +59,7 @@ pub struct Problem {
     leaves: Vec<bool>,
     /// By unit: the number of its first way among the ways of all units.
     starts: Vec<u32>,
-    /// By unit: the ways, as unit and number of the way, that it blocks.
+    /// By unit: the ways that it blocks, each as a unit and the number of one of its ways.
     blocks: Vec<Vec<(u32, u32)>>,
 }
 
@@ -82,8 +82,8 @@ pub struct Cost {
 }
 
 impl Problem {
-    /// Makes a problem; `leaves` says which units have to leave, the others stay where they are. Ways of units that
-    /// stay are dropped.
+    /// Makes a problem; `leaves` says which units have to leave, the others stay where they are. Drops the ways of
+    /// units that stay.
     pub fn new(mut ways: Vec<Vec<Way>>, leaves: Vec<bool>) -> Problem {
         let mut blocks = vec![Vec::new(); ways.len()];
         let mut starts = Vec::with_capacity(ways.len());

@@ -5,7 +5,7 @@
 use crate::direction::Direction;
 use crate::problem::{Problem, Taken};
 
-/// What is still in place, with the number of blockers left in every way.
+/// Units that are still in place, with the number of blockers left in every way.
 #[derive(Debug, Clone)]
 pub struct Remaining<'a> {
     problem: &'a Problem,

@@ -14,12 +14,12 @@ pub struct Step {
     pub bench: Option<usize>,
 }
 
-/// How a sequence was found.
+/// Method that found a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// The rule of the paper gives it.
+    /// The rule of the paper.
     Greedy,
-    /// A search over all orders found it cheaper than that rule, or where that rule is stuck.
+    /// A search over all orders, which is cheaper than the rule of the paper, or which the rule does not complete.
     Search,
 }
 
@@ -28,7 +28,7 @@ pub enum Method {
 pub struct Sequence {
     /// The steps.
     pub steps: Vec<Step>,
-    /// How it was found.
+    /// Method that found the sequence.
     pub method: Method,
     /// True when no sequence of these ways has fewer changes of direction.
     pub is_fewest_changes: bool,

@@ -1,17 +1,18 @@
 //! The search for the best order of few units: of all orders with the fewest changes of direction, the shortest.
 //!
-//! Best first over the states (what is in place, last direction). A state is dropped when even the fewest changes from
-//! it exceed the least number for the whole; that number is found by recursion and remembered.
+//! The search goes best first over the states (what is in place, last direction). A recursion finds the fewest changes
+//! from each state and remembers them; the search drops a state from which even the fewest changes exceed the least
+//! number for the whole problem.
 
 use crate::direction::Direction;
 use crate::problem::{Cost, Problem, Taken};
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet};
 
-/// Most units for which the search is made.
+/// Most units that the search accepts.
 pub(crate) const MOST_UNITS: usize = 16;
 
-/// Most states that are expanded.
+/// Most states that the search expands.
 const MOST_STATES: usize = 60_000;
 
 /// What is in place, as bits, and the direction of the last leg.
@@ -35,7 +36,7 @@ struct Few {
     least: HashMap<State, Option<u32>>,
 }
 
-/// A state that waits to be expanded.
+/// A state that the search has yet to expand.
 struct Waiting {
     cost: Cost,
     state: State,
@@ -43,7 +44,8 @@ struct Waiting {
     step: usize,
 }
 
-/// Returns the best order; `None` when units are locked, or when there are too many units or states.
+/// Returns the best order; `None` when units are locked, or when there are more than [`MOST_UNITS`] units or
+/// [`MOST_STATES`] states.
 pub(crate) fn best_order(problem: &Problem) -> Option<Vec<Taken>> {
     let mut few = Few::of(problem)?;
     let whole: u32 = (1_u32 << few.choices.len()) - 1;

@@ -1,6 +1,6 @@
 //! The global interference table: the elements that each element meets on its way out, by direction.
 //!
-//! Two tables are compared: [`Interference::swept`] moves the true bodies through the collision core;
+//! The library makes two tables to compare: [`Interference::swept`] moves the true bodies through the collision core;
 //! [`Interference::extruded`] moves their boxes, as the paper does, and so blocks what a round or slanted body passes.
 //!
 //! **Symmetry.** An element meets another one on its way along +x exactly when the other one meets it on its way along

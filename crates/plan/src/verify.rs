@@ -1,6 +1,6 @@
 //! Verification of a sequence: each step moves through the collision core with everything else in place.
 //!
-//! The tables are not used. For each step the model holds exactly what is still on the rig, or on the bench beside the
+//! It uses no table. For each step the model holds exactly what is still on the rig, or on the bench beside the
 //! elements of the step. Clearances are those of the true bodies, without any depth taken off.
 
 use crate::assembly::{Assembly, modelled};
@@ -8,10 +8,10 @@ use crate::error::PlanError;
 use crate::sequence::Step;
 use lpm::{ElementKey, Model, Move, Mover, Pose};
 
-/// Clearances are found up to this distance, mm.
+/// Greatest distance that a clearance reports, mm.
 pub const RANGE_MM: f64 = 25.0;
 
-/// What the collision core says about a step.
+/// Distances of a step that the collision core has found clear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verified {
     /// Least distance to any element that stays during the step, mm: 0 when the step slides along one; `None` beyond
@@ -19,7 +19,7 @@ pub struct Verified {
     pub clearance_mm: Option<f64>,
     /// Elements along which the step slides, in ascending order.
     pub slides_on: Vec<usize>,
-    /// Least distance to the other elements, mm; `None` beyond [`RANGE_MM`].
+    /// Least distance to the elements not in `slides_on`, mm; `None` beyond [`RANGE_MM`].
     pub clearance_to_others_mm: Option<f64>,
 }
 
@@ -30,11 +30,11 @@ pub struct Refused {
     pub step: usize,
     /// Number of the element that moves.
     pub mover: usize,
-    /// Number of the element in its way; `None` when the collision core cannot decide.
+    /// Number of the element in the way; `None` when the collision core cannot decide.
     pub blocker: Option<usize>,
 }
 
-/// Where an element is while the sequence goes on.
+/// Place of an element during a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
     Rig,
@@ -46,8 +46,7 @@ enum Place {
 /// Moves every step of a disassembly through the collision core and measures it.
 ///
 /// # Errors
-/// Fails on a flawed body; the steps themselves are answered by the inner result, whose error is the first step that
-/// the collision core refuses.
+/// Fails on a flawed body. The inner result fails with the first step that the collision core refuses.
 pub fn verified(
     assembly: &Assembly,
     steps: &[Step],

@@ -2,8 +2,8 @@
 //!
 //! A two-step way goes a distance along one direction, then out along another. Whatever stands still, the distances
 //! worth trying are those at which a piece of the unit has just passed a piece of a blocker: for bodies made of blocks
-//! along the axes, every free second leg begins at one of them. Round and slanted bodies have others too, which are not
-//! tried.
+//! along the axes, every free second leg begins at one of them. Round and slanted bodies have other distances too,
+//! which the search does not try.
 
 use crate::assembly::Assembly;
 use crate::direction::Direction;
@@ -12,10 +12,10 @@ use crate::extent::{Extent, pieces};
 use crate::problem::{Leg, Way};
 use crate::table::Interference;
 
-/// Distances that differ by less are tried once, mm.
+/// Distances that differ by less count as one, mm.
 const SAME_MM: f64 = 1e-9;
 
-/// Most distances that are tried for the first leg of one pair of directions.
+/// Most distances that the search tries for the first leg of one pair of directions.
 const MOST_DISTANCES: usize = 64;
 
 /// Units of an assembly: which elements move together.
@@ -69,8 +69,8 @@ impl Units {
     }
 }
 
-/// Returns the straight ways of every unit: one for each direction that is not forbidden. A way is blocked by what
-/// either table names.
+/// Returns the straight ways of every unit: one for each direction that is not forbidden. The blockers of a way are all
+/// those that any of the tables names.
 pub(crate) fn straight(
     assembly: &Assembly,
     units: &Units,
@@ -98,8 +98,8 @@ pub(crate) fn straight(
         .collect()
 }
 
-/// Returns two-step ways of a unit: for each pair of directions the shortest ones, as few as differ in what blocks them
-/// among the units that `counts` names.
+/// Returns the two-step ways of a unit; of each pair of directions, drops a way when a shorter one has no other
+/// blockers among the units that `counts` selects.
 ///
 /// # Errors
 /// Fails when the collision core cannot decide a way.

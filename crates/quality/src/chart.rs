@@ -91,7 +91,7 @@ pub fn subgroups(values: &[f64], size: usize, rules: Rules) -> Option<[Chart; 2]
 }
 
 /// Returns the chart of the share of defectives. Each group is `(number tested, number defective)` of a lot or an hour;
-/// groups without a tested part are left out. Returns `None` when no group is left.
+/// the chart leaves out groups without a tested part. Returns `None` when no group has one.
 pub fn shares(groups: &[(u64, u64)]) -> Option<Chart> {
     let all: u64 = groups.iter().map(|(n, _)| n).sum();
     if all == 0 {

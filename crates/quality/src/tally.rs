@@ -52,7 +52,7 @@ impl Tally {
     }
 }
 
-/// Returns `it` without counts and with twelve more classes at each end.
+/// Returns an empty histogram with the classes of `it` and twelve more at each end.
 fn wider(it: Histogram) -> Histogram {
     Histogram {
         from: it.from - CLASSES as f64 * it.width,

@@ -43,7 +43,7 @@ pub struct Accuracy {
     pub full_scale: f64,
     /// Error as a share of the reading, %, half width.
     pub reading_pct: f64,
-    /// Error beside it, half width.
+    /// Error that does not depend on the reading, half width.
     pub offset: f64,
     /// Standard deviation of a reading averaged over one period of the mains; 0 where the profile states none.
     #[serde(default)]
@@ -51,7 +51,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Returns the half width of the error of the gain at `value`.
+    /// Returns the half width of the error proportional to the reading, at `value`.
     pub fn gain(&self, value: f64) -> f64 {
         self.reading_pct / 100.0 * value.abs()
     }

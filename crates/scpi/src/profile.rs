@@ -101,7 +101,7 @@ pub enum ProgramError {
     Unknown {
         /// Name of the profile.
         profile: String,
-        /// Name asked for.
+        /// Name that the caller asked for.
         name: String,
         /// Names of its programs.
         known: Vec<String>,

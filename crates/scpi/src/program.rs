@@ -58,8 +58,8 @@ impl Program {
         self.steps.append(&mut other.steps);
     }
 
-    /// Returns the longest time of its steps: `usual` is the default time of a message, and each query may be asked
-    /// twice.
+    /// Returns the longest time of all steps together: a message without a limit of its own takes at most `usual`, and
+    /// the link may send each query twice.
     pub(crate) fn longest(&self, usual: Span) -> Span {
         self.steps.iter().fold(Span(0), |sum, step| match step {
             Step::Send(_) => sum + usual,

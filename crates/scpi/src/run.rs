@@ -279,7 +279,7 @@ fn same(found: &str, expected: &str) -> bool {
     }
 }
 
-/// Compares the echo. When it is right and a number, the run then leaves a new number, so that no later echo equals
+/// Compares the echo. After a right echo that is a number, the run leaves a new number, so that no later echo equals
 /// this one.
 fn after_echo(settings: &LinkSettings, echo: &str, raw: Option<&Raw>) -> Result<At, Failure> {
     let line = raw.and_then(|it| it.text().ok()).unwrap_or_default();

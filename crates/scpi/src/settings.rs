@@ -69,13 +69,13 @@ pub struct LinkSettings {
     pub framing: Framing,
     /// True when the link opens a new connection after doubt; false on serial ports.
     pub reopen: bool,
-    /// Default time for the reply to a query.
+    /// Longest wait for the reply to a query that sets no limit of its own.
     pub limit: Span,
-    /// Time for opening a connection.
+    /// Longest time for opening a connection.
     pub open_limit: Span,
     /// Length of the silence that ends the discarding of old replies.
     pub silence: Span,
-    /// Time for a whole resynchronisation with all its attempts.
+    /// Longest time for a resynchronisation with all its attempts.
     pub sync_limit: Span,
     /// Greatest number of attempts of a resynchronisation.
     pub attempts: u8,

@@ -32,10 +32,10 @@ pub enum SamplesError {
     /// Instruments of this dialect have no waveforms.
     #[error("found a block, expected none from an instrument without waveforms")]
     NoWaveforms,
-    /// The preamble has another length.
+    /// The preamble does not have [`PREAMBLE`] numbers.
     #[error("the preamble of a waveform: found {found} numbers, expected {PREAMBLE}")]
     Preamble {
-        /// Count of its numbers.
+        /// Count of the numbers received.
         found: usize,
     },
     /// A number of the preamble has no meaning.

@@ -19,8 +19,8 @@ use quality::spread::median;
 
 /// Greatest permitted time of the longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// The same of a solid-state relay, for a DC and for an AC load; references and searches without expectation, which the
-/// first parts of a lot take, and repetitions come on top.
+/// Greatest permitted time of the longest test of a good solid-state relay, seconds of rig time, for a DC and for an AC
+/// load, without references, searches without expectation (both only at the begin of a lot) and repetitions.
 const DC_TEST_S: f64 = 1.0;
 const AC_TEST_S: f64 = 1.5;
 /// Number of parts from which the overshoot model ([`machine::dut::em_relay::overshoot`]) starts the fine ramps close
@@ -31,7 +31,7 @@ const LEARNING_PARTS: usize = 6;
 const ANY_TEST_S: f64 = 1.0;
 /// Greatest permitted mean test time, seconds of rig time.
 const MEAN_S: f64 = 0.70;
-/// The same under a recipe that measures adaptively.
+/// Greatest permitted mean test time under a recipe that measures adaptively, seconds of rig time.
 const ADAPTIVE_MEAN_S: f64 = 0.50;
 /// Greatest permitted ratio of the mean test time to the lower bound of [`bound`].
 const RATIO: f64 = 1.15;

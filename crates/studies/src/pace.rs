@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Least parts per second of wall time.
 const PARTS_PER_SECOND: f64 = 50.0;
-/// The same of solid-state relays, whose records of the digitizer are long.
+/// Least solid-state relays per second of wall time; their records of the digitizer are long.
 const WAVES_PER_SECOND: f64 = 30.0;
 /// Seed of every run.
 const SEED: u64 = 1;

@@ -53,7 +53,7 @@ struct Read {
 
 /// Bytes that an adapter sends to the host.
 pub struct Sent {
-    /// Instant at which they leave the adapter, microseconds.
+    /// Instant at which the bytes leave the adapter, microseconds.
     pub at_us: u64,
     /// Bytes, terminator included.
     pub bytes: Vec<u8>,

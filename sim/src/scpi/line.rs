@@ -19,7 +19,7 @@ pub struct Unrest {
     pub amplitude: f64,
     /// Slow deviation of the frequency, hertz.
     pub hz: f64,
-    /// Time constant of both, seconds.
+    /// Time constant of the slow deviations of amplitude and frequency, seconds.
     pub slow_s: f64,
     /// Third and fifth harmonic, relative to the fundamental, in phase with it.
     pub harmonics: [f64; 2],

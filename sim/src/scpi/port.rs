@@ -9,7 +9,7 @@ use crate::fault::instrument::{InstrumentFault as Fault, InstrumentFaults};
 /// Greatest number of pieces, one millisecond apart, into which a fault splits a reply.
 const PIECES: usize = 200;
 
-/// What a port sends.
+/// Output of a port to its host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Out {
     /// Bytes in one piece.

@@ -105,7 +105,7 @@ impl WorldFaults {
         asked.filter(|(fault, _)| fault.kind() == FaultKind::Timed)
     }
 
-    /// Adds a fault that strikes at a part.
+    /// Adds a fault that strikes at the part with this number in the lot.
     pub fn add(&mut self, fault: Fault, part: f64) {
         self.0.push((fault, part));
     }

@@ -198,7 +198,7 @@ impl Fixture {
         }
     }
 
-    /// Returns what an instrument finds at its terminals.
+    /// Returns the voltage and current that an instrument finds at a terminal.
     pub fn at(&self, terminal: Terminal, part: Option<&Specimen>) -> Reading {
         match self {
             Self::Relay(_) => Reading::default(),

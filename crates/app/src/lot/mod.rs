@@ -280,7 +280,7 @@ impl Stream<'_, '_> {
         Ok(())
     }
 
-    /// Ends the run in the history, after the parts that never landed and the summary.
+    /// Ends the run in the history: writes the parts that never landed, then the summary, then the end.
     ///
     /// # Errors
     /// Fails when the history cannot be written for too long; the run then stays open in it.

@@ -26,7 +26,8 @@ pub(super) struct PriorState {
 }
 
 impl PriorState {
-    /// Reads the state from `store`. A simulated rig has its calibration with it instead; a new one has none.
+    /// Reads the state from `store`. The calibration of a simulated rig comes from the rig instead; a new one has only
+    /// what the certificates of the plant give.
     pub fn read(store: &Store, context: &LotContext) -> anyhow::Result<Self> {
         let simulated = context.is_simulated();
         let calibration = match context.purpose {

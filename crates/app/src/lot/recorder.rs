@@ -26,13 +26,13 @@ use machine::station::turn::Ending;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Recorder of one run.
+/// Writes the rows of one run to the history, in transactions.
 pub(super) struct Recorder {
     store: Option<Store>,
     journal: Journal,
     /// Rows that wait for the next transaction.
     rows: Vec<Row>,
-    /// Ordinal of the last judged part among these rows.
+    /// Ordinal of the last judged part among the rows that wait.
     judged: Option<u64>,
     contents: Option<(Inside, Uses)>,
     /// Wall time of all transactions so far.

@@ -1,4 +1,4 @@
-//! Rows of answers, for JSON and for text.
+//! Rows of the answers to planning questions, for JSON and for text.
 
 use history::tooling::{PlanAction, PlanLeg, PlanStep};
 use plan::{Assembly, Direction, Interference, LockedElements, Step, Verified};
@@ -15,7 +15,7 @@ pub struct BlockersRow {
     pub direction: &'static str,
     /// Elements that it meets on its way out.
     pub blockers: Vec<String>,
-    /// Those of them that hold it where it is.
+    /// Those of `blockers` that touch the element and hold it where it is.
     pub local: Vec<String>,
     /// Elements that its extruded box meets.
     pub boxes: Vec<String>,
@@ -26,7 +26,7 @@ pub struct BlockersRow {
 pub struct LockedRow {
     /// Ids of the elements that lock each other.
     pub locked: Vec<String>,
-    /// For each of them, what blocks its ways.
+    /// By id: the elements that block the ways of this element.
     pub by: BTreeMap<String, Vec<String>>,
 }
 

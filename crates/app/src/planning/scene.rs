@@ -169,7 +169,8 @@ fn run_in_each_other(scene: &Scene, tables: &Tables) -> Vec<Guided> {
     found
 }
 
-/// Returns the axis along which two elements move against each other: that of the actuator that carries only one.
+/// Returns the axis along which two elements move against each other: that of the actuator that carries one of them
+/// alone; `None` when no single actuator does.
 fn between(a: &Named, b: &Named, tables: &Tables) -> Option<usize> {
     match (&a.rides, &b.rides) {
         (Some(one), None) | (None, Some(one)) => tables.axis(one),

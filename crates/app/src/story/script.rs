@@ -55,11 +55,11 @@ pub enum Awaited {
     State(State),
     /// An alarm with this code has been raised.
     Alarm(String),
-    /// This part of the lot has its verdict.
+    /// The part of the lot with this number has its verdict.
     Judged(u64),
-    /// This part has left the nest.
+    /// The part of the lot with this number has left the nest.
     Left(u64),
-    /// The beam of its bin has seen this part.
+    /// The beam of its bin has seen the part of the lot with this number.
     Landed(u64),
 }
 

@@ -28,7 +28,7 @@ pub struct ProgramRequest {
     pub ticket: u64,
     /// The program.
     pub program: Program,
-    /// How it starts.
+    /// Way in which the program starts on a link that is out of step.
     pub start: Start,
 }
 
@@ -39,7 +39,7 @@ pub struct ProgramAnswer {
     pub ticket: u64,
     /// Time at which the program ended.
     pub answered_at: RigTime,
-    /// The values of its queries, or the first reason why they are not certain.
+    /// The values of the queries of the program, or the first reason why they are not certain.
     pub outcome: Result<Vec<Reply>, Failure>,
 }
 

@@ -62,8 +62,8 @@ impl FeedForward {
         self.last
     }
 
-    /// Takes the power that was used in this second. At the end of a steady heating ramp learns the gain, and returns
-    /// by how much the power of the feed-forward drops; 0 at any other time.
+    /// Takes the power of this second. At the end of a steady heating ramp learns the gain, and returns the drop of the
+    /// power of the feed-forward; returns 0 at any other time.
     pub fn learn(&mut self, set: &SetPoint, power: f64, task: &Task) -> f64 {
         let steady =
             set.cruises() && set.rate_k_per_s > 0.0 && power > task.lowest && power < task.highest;

@@ -45,7 +45,7 @@ pub type Table = [[Level; 7]; 7];
 
 use Level::{NB, NM, NS, PB, PM, PS, ZO};
 
-/// Rule table that is usual for furnaces.
+/// Rule table in common use for furnaces.
 pub const FURNACE: Table = [
     [NB, NB, NB, NB, NM, ZO, ZO],
     [NB, NB, NB, NB, NM, ZO, ZO],

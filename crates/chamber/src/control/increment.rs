@@ -54,7 +54,7 @@ impl Increment {
         }
     }
 
-    /// Adds to the power what the feed-forward gives up, `by`.
+    /// Adds `by`, 1 = full heater, to the power when the feed-forward falls by as much.
     pub fn shift(&mut self, by: f64) {
         self.sum += by;
     }

@@ -69,7 +69,7 @@ impl Law {
     }
 }
 
-/// What the controller knows about the chamber in one second.
+/// Readings of the chamber in one second, for the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observed {
     /// Control sensor, C; NaN without a reading.

@@ -1,8 +1,8 @@
 //! PID with back-calculation of the integral at the limits.
 //!
-//! The derivative acts on the measurement; with feed-forward it acts on the error, because that set point has no steps.
-//! The integral acts at every error: one that waits for a small error can leave the chamber far from the set point for
-//! good.
+//! The derivative acts on the measurement; with feed-forward it acts on the error, because the ramp of the set point
+//! has no steps. The integral acts at every error: if it waited for a small error, the chamber could stay far from the
+//! set point for good.
 
 use super::Task;
 use super::filter::Slope;
@@ -31,7 +31,7 @@ impl Pid {
         }
     }
 
-    /// Returns the settings.
+    /// Returns the settings in force.
     pub fn settings(&self) -> Settings {
         self.settings
     }
@@ -41,7 +41,8 @@ impl Pid {
         self.settings = settings;
     }
 
-    /// Adds to the integral what the feed-forward gives up, `by`, so that the power has no step.
+    /// Adds `by`, 1 = full heater, to the integral when the feed-forward falls by as much, so that the power has no
+    /// step.
     pub fn shift(&mut self, by: f64) {
         self.integral += by;
     }

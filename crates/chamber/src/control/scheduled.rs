@@ -77,7 +77,7 @@ impl FuzzyPid {
         }
     }
 
-    /// Adds to the integral what the feed-forward gives up.
+    /// Adds `by`, 1 = full heater, to the integral when the feed-forward falls by as much.
     pub fn shift(&mut self, by: f64) {
         self.pid.shift(by);
     }

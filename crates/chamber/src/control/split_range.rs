@@ -6,7 +6,7 @@
 use super::Observed;
 use crate::tune::Identified;
 
-/// Least excess of the chamber over ambient at which the vent is used, K.
+/// Least excess of the chamber over ambient at which the vent opens, K.
 const LEAST_EXCESS_K: f64 = 1.0;
 
 /// Lag of the vent, as a share of the time constant of the response to the heater: about the share of the heater itself.

@@ -16,17 +16,17 @@ pub const LAG_SPREAD: f64 = 0.15;
 const INSTANT_S: f64 = 0.5;
 /// Step of the lag for the derivative `g`, as a share of the lag.
 const STEP: f64 = 0.02;
-/// Weight of the prior of a temperature, 1/K²: so small that it changes nothing, and the equations of a part without
-/// event stay solvable.
+/// Weight of the prior of a temperature, 1/K²: so small that it changes no result, yet large enough to keep the
+/// equations of a part without event solvable.
 const NOTHING: f64 = 1e-9;
 
-/// What scatters from one switching to the next, and what delays the sensor.
+/// Scatter of switchings, and delay of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
     /// Scatter of a switching temperature from cycle to cycle, one standard deviation, K.
     pub scatter_k: f64,
-    /// Lag and delay of the reference sensor, s. A [`LotLag`] is the lag of the parts minus this one; the spread of
-    /// lags is a share of both together.
+    /// Lag and delay of the reference sensor, s. A [`LotLag`] is the lag of the parts minus this lag; the spread of
+    /// lags is a share of the sum of both.
     pub sensor_lag_s: f64,
 }
 
@@ -50,7 +50,8 @@ pub struct Estimate {
     pub differential: Option<Value>,
     /// Lag of the part, s.
     pub lag_s: f64,
-    /// Widest range of one switching temperature over the passes, K; `None` when each was seen once.
+    /// Wider of the ranges of operate and reset temperature over the passes, K; `None` when the part switched only once
+    /// each way.
     pub range_k: Option<f64>,
     /// Weighted sum of squares of the residuals (chi squared).
     pub misfit: f64,
@@ -63,7 +64,7 @@ const MOST: f64 = 5.0;
 
 /// Returns the scatter of switchings, K, that explains how much the passes of the parts of a lot disagree: at least the
 /// assumed one, at most five times that. The median of the parts decides, so that a few defective ones do not count. A
-/// part with single passes has no vote.
+/// part that switched only once each way has no vote.
 pub fn lot_scatter(record: &Record, parts: &[Switching], lag: &LotLag, assumed: &Noise) -> f64 {
     let mut noise = *assumed;
     for _ in 0..8 {

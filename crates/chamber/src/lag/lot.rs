@@ -17,9 +17,9 @@ const MEDIAN_OF_SQUARES: f64 = 0.455;
 pub struct LotLag {
     /// Lag behind the reference sensor, s.
     pub seconds: f64,
-    /// Its standard uncertainty, s.
+    /// Standard uncertainty of the lag, s.
     pub u_s: f64,
-    /// Parts that count.
+    /// Number of parts that count.
     pub parts: usize,
 }
 

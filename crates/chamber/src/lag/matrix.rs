@@ -1,4 +1,4 @@
-//! Symmetric 3 x 3 systems.
+//! Solves symmetric 3 x 3 systems of linear equations.
 
 /// Rows of a matrix.
 pub type Matrix = [[f64; 3]; 3];

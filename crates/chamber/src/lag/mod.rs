@@ -43,7 +43,7 @@ pub struct Transition {
 }
 
 impl Transition {
-    /// Makes a clean snap.
+    /// Makes a transition of one edge, a clean snap.
     pub const fn at(instant_s: f64) -> Self {
         Self {
             first_s: instant_s,

@@ -3,8 +3,8 @@
 /// Longest gap that a straight line replaces, s. The rate of the set point changes by at most 20 K/min within a minute,
 /// so the line is off by 0.011 K at most.
 const SHORT_GAP_S: usize = 3;
-/// Time after a longer gap during which the record gives no temperature, in lengths of the gap. A low-pass of any lag
-/// has then forgotten all but 7 % of the gap.
+/// Time after a gap longer than [`SHORT_GAP_S`] during which the record gives no temperature, in lengths of the gap.
+/// Afterwards at most 7 % of the error of the gap remains in a low-pass, whatever its lag.
 const FORGETS: usize = 5;
 
 /// Readings of the reference sensor, one a second.
@@ -13,7 +13,7 @@ pub struct Record {
     start_s: f64,
     parts_c: f64,
     readings_c: Vec<f64>,
-    /// Readings that are missing since the last one.
+    /// Number of readings missing since the last one.
     missing: usize,
     /// Stretches without a temperature, in seconds since the start: from the last reading before a gap until the
     /// low-pass has forgotten the gap.
@@ -34,8 +34,8 @@ impl Record {
     }
 
     /// Appends the reading of the next second, C; one that is not finite is missing. A straight line replaces missing
-    /// readings; the first reading replaces those that are missing before it. A gap of more than 3 s, and one at the
-    /// start, gives no temperature.
+    /// readings; the first reading replaces those missing before it. The record gives no temperature in a gap of more
+    /// than 3 s, nor in one at the start.
     pub fn push(&mut self, reading_c: f64) {
         if !reading_c.is_finite() {
             self.missing += 1;
@@ -88,7 +88,7 @@ impl Record {
     }
 }
 
-/// Returns the low-pass after a share of a second in which its input moves linearly from one reading to the next.
+/// Returns the low-pass after `share_s` of a second, while its input moves linearly from one reading to the next.
 fn moved(value: f64, [from, to]: [f64; 2], lag_s: f64, share_s: f64) -> f64 {
     let slope = to - from;
     let behind = value - from + slope * lag_s;

@@ -1,16 +1,16 @@
 //! Brings a warm chamber to rest before its identification: vent open until its temperature hardly falls.
 //!
-//! Walls that have kept heat warm or cool the air on their own. An identification would take that drift, which fades, for
-//! losses that stay. With the vent open and the fan on the chamber falls to some kelvin above the room; what is left of the
-//! heat of the walls shows as the slope.
+//! Walls that have kept heat warm or cool the air on their own. An identification would take this fading drift for
+//! lasting losses. With the vent open and the fan on, the chamber falls to some kelvin above the room; the slope then
+//! shows the heat left in the walls.
 
 use super::Identified;
 use crate::statistics::slope;
 
-/// Rise during a rest with the fan only that a cold chamber does not exceed, K: the fan lifts the air by 1 K at once, and all
-/// by another in three minutes.
+/// Largest rise of a cold chamber during a rest with the fan only, K: the fan lifts the air by 1 K at once, and air and
+/// walls by another 1 K in three minutes.
 const COLD_RISE_K: f64 = 3.2;
-/// Slopes at the end of that rest between which a chamber counts as cold, K/s: the fan alone makes 0.2 to 0.5 K/min.
+/// Slopes at the end of such a rest between which a chamber counts as cold, K/s: the fan alone makes 0.2 to 0.5 K/min.
 const COLD_K_PER_S: [f64; 2] = [-0.1 / 60.0, 0.6 / 60.0];
 /// Time over which the slope of the cooling is measured, s.
 const SLOPE_S: usize = 120;
@@ -38,9 +38,9 @@ pub struct Cooling {
 /// End of a cooling with the vent open.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cooled {
-    /// Temperature, C.
+    /// Temperature at the end, C.
     pub end_c: f64,
-    /// Slope, K/s.
+    /// Slope of the temperature over the last two minutes, K/s.
     pub slope_k_per_s: f64,
 }
 

@@ -1,14 +1,14 @@
-//! Standard uncertainties of fitted figures: the curvature of the misfit at its minimum, and the residuals.
+//! Standard uncertainties of fitted figures, from the curvature of the misfit at its minimum and from the residuals.
 
-/// Step of a figure for its derivative, as a share of it.
+/// Step of a figure for its derivative, as a share of the figure.
 const STEP: f64 = 1e-3;
 /// Least step, so that a figure of zero has a derivative.
 const LEAST_STEP: f64 = 1e-4;
 
 /// Returns the standard uncertainties of the figures of a model that was fitted to a response, one sample a second.
 ///
-/// Residuals of one second and the next are alike where the model has not the shape of the chamber; the response then
-/// holds fewer independent samples than seconds, and the uncertainties grow accordingly.
+/// Where the shape of the model is not that of the chamber, the residuals of neighbouring seconds are alike: the
+/// response holds fewer independent samples than seconds, and the uncertainties grow accordingly.
 pub fn standard<const N: usize>(
     response: &[f64],
     figures: &[f64; N],
@@ -32,7 +32,7 @@ pub fn standard<const N: usize>(
     diagonal_of_inverse(information).map(|it| (it * scale).sqrt())
 }
 
-/// Returns the derivatives of a value by its figures.
+/// Returns the partial derivatives of a value with respect to the figures.
 fn gradient<const N: usize>(figures: &[f64; N], value: impl Fn(&[f64; N]) -> f64) -> [f64; N] {
     std::array::from_fn(|which| {
         let step = (STEP * figures[which].abs()).max(LEAST_STEP);
@@ -45,7 +45,8 @@ fn gradient<const N: usize>(figures: &[f64; N], value: impl Fn(&[f64; N]) -> f64
     })
 }
 
-/// Returns the factor by which residuals that follow each other reduce the number of independent samples, at least 1.
+/// Returns the factor by which the correlation of neighbouring residuals reduces the number of independent samples, at
+/// least 1.
 fn alike(residuals: &[f64]) -> f64 {
     let squares: f64 = residuals.iter().map(|it| it * it).sum();
     let pairs: f64 = residuals.windows(2).map(|it| it[0] * it[1]).sum();

@@ -16,7 +16,7 @@ const ROUNDS: i32 = 8;
 pub struct TwoPart {
     /// Gain of the settling part, K per unit of power.
     pub gain_k: f64,
-    /// Its time constant, s.
+    /// Time constant of the settling part, s.
     pub time_constant_s: f64,
     /// Delay, s.
     pub delay_s: f64,
@@ -125,7 +125,7 @@ fn solved(response: &[f64], basis: impl Fn(usize) -> [f64; 2]) -> ([f64; 2], f64
     (factors, response.iter().enumerate().map(residual).sum())
 }
 
-/// Returns time constant and delay of the least cost: a grid that narrows around its best point.
+/// Searches time constant and delay, s, of the least cost, by a grid that narrows around its best point.
 fn searched(cost: impl Fn(f64, f64) -> f64) -> (f64, f64) {
     let [mut tau, mut delay] = [TIME_CONSTANTS_S.map(f64::ln), DELAYS_S];
     let mut best = (f64::INFINITY, TIME_CONSTANTS_S[0], DELAYS_S[0]);
@@ -148,7 +148,7 @@ fn searched(cost: impl Fn(f64, f64) -> f64) -> (f64, f64) {
     (best.1, best.2)
 }
 
-/// Returns an interval of half the length around a point, inside the outer ends.
+/// Returns an interval of half the length of `ends`, centred on `around` and cut off at the outer ends.
 fn narrowed(ends: [f64; 2], around: f64, outer: [f64; 2]) -> [f64; 2] {
     let quarter = (ends[1] - ends[0]) / 4.0;
     [

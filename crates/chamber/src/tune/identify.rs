@@ -7,8 +7,8 @@
 //! | coast | fan only | losses and fan, together with the drift of the rest |
 //! | vent | vent open | power that the vent removes |
 //!
-//! The run takes 15 minutes and heats by some 20 K. A chamber that the rest shows to be warm is cooled first with the vent
-//! open, and rests again.
+//! The run takes 15 minutes and heats by some 20 K. When the rest shows that the chamber is warm, the run first cools
+//! it with the vent open, then rests again.
 
 mod doubt;
 
@@ -23,12 +23,12 @@ use crate::statistics::{mean, slope};
 const LENGTHS_S: [usize; 4] = [180, 300, 300, 90];
 /// Stretch at the end of rest and coast that gives the drift, s.
 const DRIFT_S: usize = 120;
-/// Length of the response to which the first-order model is fitted, s.
+/// Length of the response that the first-order model fits, s.
 const FIRST_ORDER_S: usize = 120;
 /// Least delay of the first-order model, as a share of the delay of the whole response. With a quick sensor the model
 /// alone would show hardly any delay, and a loop that is tuned on it oscillates.
 const LEAST_DELAY: f64 = 0.65;
-/// Least delay of that model, s: sampling and the filter of the derivative.
+/// Least delay of the first-order model, s: sampling and the filter of the derivative.
 const LEAST_DELAY_S: f64 = 4.2;
 /// Least rise of the heat stage, K.
 const LEAST_RISE_K: f64 = 3.0;
@@ -38,7 +38,7 @@ const LEAST_MINUTE_K: f64 = 0.3;
 const MINUTE_S: usize = 60;
 /// Coolings after which a chamber that still drifts is identified as it is.
 const MOST_COOLINGS: usize = 2;
-/// Rounds that find the temperature around a chamber that was cooled.
+/// Iterations that find the temperature around a cooled chamber.
 const AMBIENT_ROUNDS: usize = 8;
 /// Vent open, no heat.
 const VENTED: Command = Command {
@@ -117,7 +117,7 @@ pub struct Identification {
 }
 
 impl Identification {
-    /// Starts a run with a step of the heater (0 to 1), with a temperature that it must not exceed.
+    /// Starts a run whose heater step is `power`, 0 to 1; the chamber must not exceed `limit_c`.
     pub fn new(power: f64, ambient_c: f64, limit_c: f64) -> Self {
         let readings_c = Vec::with_capacity(LENGTHS_S.iter().sum());
         Self {
@@ -196,13 +196,13 @@ impl Identification {
         self.coolings < MOST_COOLINGS && !cool::is_cold(&self.readings_c, drift)
     }
 
-    /// Returns the temperature around the chamber, C: the one that the run was given, or for a chamber that was cooled the
-    /// one that the figures have shown.
+    /// Returns the temperature around the chamber, C: the one given at the start, or, after a cooling, the one that
+    /// fits the figures.
     pub fn ambient_c(&self) -> f64 {
         self.ambient_c
     }
 
-    /// Finds the temperature around a chamber that was cooled: the one that balances fan, losses and vent at the end of the
+    /// Finds the temperature around a cooled chamber: the one that balances fan, losses and vent at the end of the
     /// cooling.
     fn find_ambient(&mut self, found: &Identified) {
         if let Some(ambient_c) = self.cooled.and_then(|it| it.ambient_c(found)) {
@@ -221,8 +221,8 @@ impl Identification {
         (heated.map(rise).collect(), drift, start_c)
     }
 
-    /// Returns the figures. Those of fan and vent depend on the temperature around the chamber, and it on them, so that a
-    /// few rounds find both.
+    /// Returns the figures. The figures of fan and vent depend on the temperature around the chamber, and this
+    /// temperature on them, so the function finds both by iteration.
     fn settled_figures(&mut self) -> Result<Identified, IdentifyError> {
         let mut found = self.figures()?;
         for _ in 0..AMBIENT_ROUNDS {

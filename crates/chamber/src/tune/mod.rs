@@ -1,4 +1,4 @@
-//! From an experiment on the chamber to settings of its controller: a step response, or a relay oscillation.
+//! Finds the settings of a controller from an experiment on its chamber: a step response, or a relay oscillation.
 
 mod cool;
 mod doubt;
@@ -19,12 +19,12 @@ pub struct FirstOrder {
     pub delay_s: f64,
 }
 
-/// What an identification run finds: the response to power `K/(tau s + 1) + ki/s` after a delay, losses, fan and vent.
+/// Figures of an identification run: the response to power `K/(tau s + 1) + ki/s` after a delay, losses, fan and vent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Identified {
     /// Gain `K` of the part that settles, K per unit of power.
     pub gain_k: f64,
-    /// Its time constant `tau`, s.
+    /// Time constant `tau` of the part that settles, s.
     pub time_constant_s: f64,
     /// Delay, s.
     pub delay_s: f64,

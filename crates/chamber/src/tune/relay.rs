@@ -5,11 +5,11 @@ use crate::statistics::mean;
 
 /// Height of a jump of the power to either side of its mean, 1 = full heater.
 const JUMP: f64 = 0.15;
-/// Half width of the switching band, K.
+/// Distance from the target at which the power jumps, K.
 const BAND_K: f64 = 0.15;
-/// Cycles before the measured ones, in which the mean power finds its place.
+/// Cycles before the measured ones, in which the tuning adjusts the mean power towards halves of equal length.
 const SETTLING: usize = 6;
-/// Cycles that count.
+/// Cycles that the tuning measures.
 const MEASURED: usize = 6;
 /// Longest half of a cycle, s.
 const LONGEST_S: u32 = 1800;
@@ -36,16 +36,16 @@ pub enum RelayError {
 pub struct Oscillation {
     /// Ultimate gain, 1/K.
     pub ultimate_per_k: f64,
-    /// Its standard uncertainty, from the scatter of the cycles, 1/K.
+    /// Standard uncertainty of the ultimate gain, from the scatter of the cycles, 1/K.
     pub u_ultimate_per_k: f64,
     /// Period, s.
     pub period_s: f64,
-    /// Its standard uncertainty, from the scatter of the cycles, s.
+    /// Standard uncertainty of the period, from the scatter of the cycles, s.
     pub u_period_s: f64,
 }
 
 impl Oscillation {
-    /// Returns the settings for this oscillation.
+    /// Returns the settings of the controller by the rule of [`Settings::from_oscillation`].
     pub fn settings(&self) -> Settings {
         Settings::from_oscillation(self.ultimate_per_k, self.period_s)
     }
@@ -79,7 +79,8 @@ struct Cycle {
 }
 
 impl RelayTune {
-    /// Starts below the temperature or near it, with the power that about holds it.
+    /// Starts in a chamber below or near `target_c`; `holding` is the power that about holds this temperature, 1 = full
+    /// heater.
     pub fn new(target_c: f64, holding: f64) -> Self {
         Self {
             target_c,

@@ -6,7 +6,7 @@ use super::{Second, Trouble};
 use crate::tune::Identified;
 use crate::tune::response::Response;
 
-/// Time over which both slopes are measured, s.
+/// Length of the stretch that gives both slopes, s.
 const SLOPE_S: usize = 30;
 /// Time for which the slopes must disagree, s; together with [`SLOPE_S`] a minute.
 const LASTS_S: u32 = 30;
@@ -21,10 +21,11 @@ const MODEL_SHARE: f64 = 0.4;
 const RECENT_S: f64 = 120.0;
 /// Slope without power that reveals a shorted power unit, K/s, in addition to what fan and walls explain.
 const UNPOWERED_K_PER_S: f64 = 0.5 / 60.0;
-/// Time without power after which the slope is judged, s: until then the heater gives off its heat.
+/// Time without power after which the balance judges the slope, s: until then the heater gives off its heat.
 const UNPOWERED_S: u32 = 60;
-/// A vent is closing when it is less open than its recent maximum by this. The air then warms at walls that are hotter,
-/// which the model does not know, so no slope is judged until the maximum has decayed: 190 s at most.
+/// A vent counts as closing when its opening is below its recent maximum by more than this. The air then warms at
+/// hotter walls, which the model does not know, so the balance judges no slope until the maximum has decayed: 190 s at
+/// most.
 const CLOSING: f64 = 0.05;
 /// Rate at which the recent maximum of the vent decays, 1/s.
 const FORGETS_PER_S: f64 = 0.005;

@@ -35,7 +35,7 @@ pub struct Recent {
 }
 
 impl Recent {
-    /// Makes a window over some seconds; it holds one value more than that.
+    /// Makes a window over `seconds`, which holds one value more than that.
     pub const fn of(seconds: usize) -> Self {
         Self {
             seconds,

@@ -5,9 +5,9 @@ use super::lasting::{Lasting, Recent};
 
 /// Largest step of a reading, K/s.
 const JUMP_K: f64 = 3.0;
-/// Difference of two sensors that is allowed at rest, K; a larger one must last for `DIFFER_S`.
+/// Difference of two sensors at rest above which they disagree, K, once it has lasted for `DIFFER_S`.
 const DIFFER_K: f64 = 1.0;
-/// Further allowed difference per rate, K per K/min.
+/// Additional difference allowed while the air moves, K per K/min of its rate; the next constant is the time, s.
 const DIFFER_MIN: f64 = 0.1;
 const DIFFER_S: u32 = 10;
 /// A sensor counts as stuck when it moves by less than this within `STUCK_S` at more than `STUCK_POWER`, K.

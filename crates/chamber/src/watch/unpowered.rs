@@ -9,8 +9,8 @@
 //! | fan alone | under 1 K/min |
 //! | power unit shorted, a half wave or all | 6 to 13 K/min for as long as it lasts, most of it in the first minute |
 //!
-//! The slope therefore counts once the outputs have not changed for a minute; within that minute the rise is bounded by what
-//! walls can give.
+//! The slope therefore counts once the heater has been off, and the vent has not closed, for a minute; within that
+//! minute the check allows the rise that walls can make.
 
 use super::lasting::Recent;
 use crate::control::split_range::Command;
@@ -20,11 +20,12 @@ const EVENS_S: u32 = 40;
 /// Rise from walls that are hotter than the air, K: with the fan on and the vent open they are 10 K above it, after a
 /// door that was open 20 K.
 const WALL_K: f64 = 25.0;
-/// Time over which the slope is measured, s.
+/// Length of the stretch that gives the slope, s.
 const SLOPE_S: usize = 20;
 /// Slope that only a heater makes once walls and air have evened out, K/s.
 const HEATED_K_PER_S: f64 = 4.0 / 60.0;
-/// Change within `SLOPE_S` that a heater makes far above the power of an identification, K: its step makes half of it.
+/// Change within `SLOPE_S` that only a heater far above the power of an identification makes, K: the step of an
+/// identification makes half of this.
 const RACE_K: f64 = 8.0;
 /// A vent that closes by more than this lets the walls warm the air.
 const CLOSES: f64 = 0.05;
@@ -33,9 +34,9 @@ const CLOSES: f64 = 0.05;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unpowered {
     recent: Recent,
-    /// Temperature at the last change of the outputs, C; `None` before the first second.
+    /// Temperature when the heater was last on or the vent last closed, C; `None` before the first second.
     from_c: Option<f64>,
-    /// Seconds since then.
+    /// Seconds since the heater was last on or the vent last closed.
     quiet_s: u32,
     vent: f64,
 }

@@ -4,10 +4,10 @@ use history::{Archive, Filter, LotSummary, Moment, Part};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// Parts whose values make the filters.
+/// Greatest number of parts whose values the filters take.
 const KNOWN: u64 = 400;
 
-/// Random numbers, and what the filters choose from.
+/// Random numbers, with the runs, parameters and parts from which filters choose.
 #[derive(Debug)]
 pub(super) struct Draw {
     random: SplitMix64,
@@ -19,7 +19,7 @@ pub(super) struct Draw {
 }
 
 impl Draw {
-    /// Reads what there is in the file.
+    /// Reads runs, parameters and some parts of the file.
     pub fn of(file: &Archive, seed: u64) -> history::Result<Self> {
         let mut parts = Vec::new();
         let all = Filter {
@@ -44,23 +44,23 @@ impl Draw {
         })
     }
 
-    /// Returns a number below `limit`.
+    /// Draws a number below `limit`; 0 for a limit of 0.
     pub fn below(&mut self, limit: usize) -> usize {
         (self.random.next_u64() % limit.max(1) as u64) as usize
     }
 
-    /// Returns true once in `times`.
+    /// Draws true with a probability of one in `times`.
     pub fn once_in(&mut self, times: usize) -> bool {
         self.below(times) == 0
     }
 
-    /// Returns a part of the file; `None` when it has none.
+    /// Draws a part of the file; `None` when the file has none.
     pub fn part(&mut self) -> Option<Part> {
         let at = self.below(self.parts.len());
         self.parts.get(at).cloned()
     }
 
-    /// Returns a parameter, most often one that parts have; rarely one that does not exist.
+    /// Draws a parameter, most often one that parts have; rarely one that does not exist.
     pub fn parameter(&mut self) -> String {
         if self.once_in(40) {
             return "no_such_v".to_owned();
@@ -74,7 +74,7 @@ impl Draw {
         keys.get(at).cloned().unwrap_or_default()
     }
 
-    /// Returns the name of a lot; rarely one that does not exist.
+    /// Draws the name of a lot; rarely one that does not exist.
     pub fn lot(&mut self) -> String {
         let unknown = usize::from(self.once_in(40));
         let at = self.below(self.runs.len() + unknown);
@@ -82,7 +82,7 @@ impl Draw {
         known.unwrap_or_else(|| "no such lot".to_owned())
     }
 
-    /// Returns a filter for runs and time.
+    /// Draws a filter by run and time.
     pub fn runs(&mut self) -> Filter {
         let mut filter = Filter {
             lot: self.once_in(2).then(|| self.lot()),
@@ -104,7 +104,7 @@ impl Draw {
         filter
     }
 
-    /// Returns a filter for parts.
+    /// Draws a filter by run, time and part.
     pub fn parts(&mut self) -> Filter {
         let mut filter = self.runs();
         let Some(like) = self.part() else {

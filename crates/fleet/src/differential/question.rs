@@ -39,7 +39,7 @@ pub(super) enum Question {
 /// Number of kinds of questions.
 const KINDS: usize = 20;
 
-/// A question was refused, in these words.
+/// Refusal of a question, in words.
 #[derive(Debug, thiserror::Error)]
 #[error("refused: {0}")]
 pub(super) struct Refused(String);
@@ -149,7 +149,7 @@ fn orders(draw: &mut Draw) -> OrderChoice {
     }
 }
 
-/// Returns the page settings, which have no clock.
+/// Returns settings for printed pages without a time of printing, so that two prints are equal.
 fn sheet() -> Paper {
     Paper {
         language: Lang::En,

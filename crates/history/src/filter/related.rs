@@ -101,7 +101,8 @@ impl Filter {
     }
 }
 
-/// Returns the expression for the number of the span in which a part was judged, from `first` on, as a search by halves.
+/// Returns an SQL expression for the number of the span in which a part was judged; `first` is the number of the span
+/// before the first edge. The expression searches by halves.
 fn span(edges: &[i64], first: usize) -> String {
     let half = edges.len() / 2;
     let Some(edge) = edges.get(half) else {

@@ -65,7 +65,7 @@ pub struct ReferencePartStatus {
     pub nominal_v: f64,
     /// Time of its last test, if any.
     pub seen: Option<Moment>,
-    /// Lot and run of its last test.
+    /// Lot and run of the last test of the reference part.
     pub run: Option<(String, u32)>,
     /// Certified quantities, each with its latest reading.
     pub values: Vec<CertifiedReading>,

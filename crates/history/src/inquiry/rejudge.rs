@@ -30,7 +30,7 @@ pub struct RejudgedPart {
     pub bin: String,
     /// Reasons why the part does not pass by the other recipe, as texts.
     pub reasons: Vec<String>,
-    /// The same `reasons` as codes.
+    /// Reasons why the part does not pass by the other recipe, as codes.
     pub reason_codes: Vec<Reason>,
 }
 

@@ -19,7 +19,7 @@ const LONGEST: i32 = 400;
 pub struct Shift {
     /// Name.
     pub name: String,
-    /// Begin and end, minutes from the midnight before it begins; the end is at most a day after the begin.
+    /// Begin and end, minutes after the midnight before the begin; the shift is at most a day long.
     pub minutes: (u16, u16),
 }
 
@@ -30,14 +30,14 @@ pub struct ShiftYield {
     pub day: String,
     /// Name of the shift.
     pub shift: String,
-    /// Plant and name of the rig, where the answer may be of several.
+    /// Plant and name of the rig; `None` from the file of one rig.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rig: Option<String>,
-    /// Begin, or that of the time span.
+    /// Begin of the shift, or of the time span where that is later.
     pub from: Moment,
-    /// End, or that of the time span.
+    /// End of the shift, or of the time span where that is earlier.
     pub to: Moment,
-    /// Counts; without suspect parts.
+    /// Counts of the parts judged in the shift; `suspect` stays 0.
     #[serde(flatten)]
     pub counts: LotYield,
 }
@@ -154,8 +154,8 @@ fn clipped(
 type Counts = BTreeMap<(usize, Option<String>), LotYield>;
 
 impl Archive {
-    /// Counts the selected parts as [`Archive::lot_yield`] does, suspect parts aside, by time span and rig; the file of a rig
-    /// does not name it.
+    /// Counts the selected parts by time span and rig, as [`Archive::lot_yield`] does, but no suspect parts. The rig is
+    /// `None` in the file of one rig.
     fn by_span(&self, filter: &Filter, edges: &[i64]) -> crate::Result<Counts> {
         const DOING: &str = "counting the parts of shifts";
         let read = |row: &Row<'_>| {

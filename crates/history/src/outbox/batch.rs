@@ -1,25 +1,25 @@
 //! Rows of a batch. Times are microseconds since 1970 UTC; numbers of parts and runs are the row numbers of the file.
 
-/// Which raw replies travel.
+/// Choice of the raw replies that go to a database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SampleChoice {
     /// None.
     #[default]
     None,
-    /// Those of parts that did not pass.
+    /// Raw replies of parts that did not pass.
     Rejects,
     /// All.
     All,
 }
 
-/// What one transaction of the target stores.
+/// Rows that a target stores in one transaction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Batch {
-    /// Name.
+    /// UUID, the name of the batch.
     pub uuid: String,
     /// Place in the sequence of all batches of the file, from 1.
     pub number: i64,
-    /// Last entry of the queue in it.
+    /// Number of the last entry of the queue in the batch.
     pub to: i64,
     /// Key and meaning of every parameter of the file, by row number.
     pub parameters: Vec<(i64, String, String)>,
@@ -29,7 +29,7 @@ pub struct Batch {
     pub runs: Vec<RunRow>,
     /// New parts, as they are now.
     pub parts: Vec<PartRow>,
-    /// What became known later of parts in earlier batches.
+    /// Later changes of parts of earlier batches.
     pub changes: Vec<PartChange>,
     /// Reasons of `parts` and `changes`.
     pub reasons: Vec<ReasonRow>,
@@ -52,11 +52,11 @@ pub struct RecipeRow {
     pub name: String,
     /// TOML.
     pub body: String,
-    /// First use.
+    /// Time of the first use.
     pub first_used_us: i64,
 }
 
-/// What is known of a run when it begins.
+/// Facts about a run that are known when it begins.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunRow {
     /// Row number.
@@ -79,7 +79,7 @@ pub struct RunRow {
     pub written_by: String,
 }
 
-/// What of a part may become known after its judgement.
+/// Facts about a part that may change after its judgement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartState {
     /// Verdict.
@@ -88,11 +88,11 @@ pub struct PartState {
     pub bin: Option<String>,
     /// Reasons, JSON.
     pub reasons: String,
-    /// Seconds since the part before left the nest.
+    /// Time since the part before left the nest, s.
     pub cycle_s: Option<f64>,
     /// Bin whose beam saw the part.
     pub landed_bin: Option<String>,
-    /// When the beam saw it.
+    /// Time at which the beam saw the part.
     pub landed_at_us: Option<i64>,
 }
 
@@ -111,9 +111,9 @@ pub struct PartRow {
     pub serial: Option<String>,
     /// Time of the judgement.
     pub judged_at_us: i64,
-    /// Seconds of the test.
+    /// Duration of the test, s.
     pub test_s: Option<f64>,
-    /// The rest.
+    /// Facts that may change later.
     pub state: PartState,
 }
 

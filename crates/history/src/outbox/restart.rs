@@ -5,20 +5,20 @@ use super::{Outbox, read_target, uuid};
 use crate::error::{Doing, Result};
 use rusqlite::{Transaction, params};
 
-/// How to begin anew with a target.
+/// Way to begin anew with a target.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Restart {
-    /// Sends every row again; the target keeps what it has. `last` is the target's last batch of this file: its number
+    /// Queues every row again; the target keeps what it has. `last` is the target's last batch of this file: its number
     /// and its UUID.
     Again {
         /// Number and UUID; `None` when the target has no batch of this file.
         last: Option<(i64, String)>,
     },
-    /// Continues as a new history of the rig, with those runs that the target lacks.
+    /// Continues as a new history of the rig and queues the runs that the target lacks.
     TakeOver {
         /// UUID of every run of the rig that the target has.
         known: Vec<String>,
-        /// Rows outside of runs travel when they are younger, microseconds since 1970 UTC.
+        /// Rows outside of runs travel when they are younger than this instant, microseconds since 1970 UTC.
         since_us: i64,
     },
 }

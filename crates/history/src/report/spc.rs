@@ -9,12 +9,12 @@ use quality::chart::Chart;
 use quality::rules::Signal;
 use texts::{Lang, Message};
 
-/// A control chart, and the names of its points.
+/// A control chart with its title and the names of its points.
 #[derive(Debug, Clone)]
 pub struct NamedChart<'a> {
     /// Parameter key or name of a bin.
     pub of: &'a str,
-    /// The chart.
+    /// Points, limits and signals.
     pub chart: &'a Chart,
     /// Names of the points; when empty, the points are numbered from 1.
     pub names: &'a [String],

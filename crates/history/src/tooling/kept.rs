@@ -81,11 +81,11 @@ impl PlanRefusal {
 pub struct PlanEnd {
     /// `done` or `abandoned`.
     pub how: String,
-    /// When.
+    /// Time of the end.
     pub at: Moment,
     /// Person who did the last step, or who abandoned the plan.
     pub who: String,
-    /// Reason for abandoning it.
+    /// Reason why a person abandoned the plan.
     pub why: Option<String>,
 }
 
@@ -95,7 +95,7 @@ pub struct PlanEntry {
     /// Number of the plan.
     #[schema(example = 1)]
     pub plan: i64,
-    /// When a person started it.
+    /// Time at which a person started the plan.
     pub started: Moment,
     /// Name of the person.
     pub who: String,
@@ -111,7 +111,7 @@ pub struct PlanEntry {
     pub steps: usize,
     /// Number of steps that are done.
     pub done: usize,
-    /// How it ended; null while it is under way.
+    /// End of the plan; null while the plan is under way.
     pub end: Option<PlanEnd>,
 }
 
@@ -120,7 +120,7 @@ pub struct PlanEntry {
 pub struct StepDone {
     /// Number of the step, from 1.
     pub step: usize,
-    /// When it was ticked off.
+    /// Time at which a person ticked the step off.
     pub at: Moment,
     /// Name of the person.
     pub who: String,

@@ -15,7 +15,7 @@ use std::collections::HashSet;
 use texts::Lang;
 use utoipa::ToSchema;
 
-/// What a plan is for.
+/// Purpose of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PlanKind {
@@ -54,7 +54,7 @@ pub struct ChangeoverRow {
 /// A plan with everything that a page or a drawing shows of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ToolingPlan {
-    /// What the plan is for.
+    /// Purpose of the plan.
     pub kind: PlanKind,
     /// Name of the scene that the plan begins with.
     pub scene: String,
@@ -68,7 +68,7 @@ pub struct ToolingPlan {
     pub steps: Vec<PlanStep>,
     /// Bodies of each scene, in the order in which `pictures` counts scenes.
     pub scenes: Vec<Vec<PlanBody>>,
-    /// Where each step happens.
+    /// By step: the surroundings that its picture shows.
     pub pictures: Vec<PlanPicture>,
 }
 
@@ -83,7 +83,7 @@ pub struct PlanBody {
     pub front: Vec<Vec<[f64; 2]>>,
 }
 
-/// Where a step happens.
+/// Surroundings of a step: a scene, or a subassembly on the bench.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlanPicture {
     /// Index of the scene in `scenes`.

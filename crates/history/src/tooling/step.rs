@@ -29,7 +29,7 @@ pub enum PlanAction {
 pub struct PlanStep {
     /// Number of the step, from 1.
     pub step: usize,
-    /// What it does.
+    /// Whether the step takes elements off or puts them on.
     pub action: PlanAction,
     /// Ids of the elements that move together.
     pub elements: Vec<String>,
@@ -44,7 +44,7 @@ pub struct PlanStep {
     pub clearance_mm: Option<f64>,
     /// Elements along which the step slides.
     pub slides_on: Vec<String>,
-    /// Least distance to anything but those elements, mm; null beyond 25 mm.
+    /// Least distance to anything but the elements of `slides_on`, mm; null beyond 25 mm.
     pub clearance_to_others_mm: Option<f64>,
     /// Elements in place that block another direction of the moving ones.
     pub held_by: Vec<String>,

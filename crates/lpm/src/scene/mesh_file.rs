@@ -40,7 +40,7 @@ pub enum MeshFault {
     Triangle {
         /// Number of the triangle.
         triangle: usize,
-        /// Its first non-finite number.
+        /// First number of the triangle that is not finite.
         found: f64,
     },
     /// An STL file is not valid text, and its length does not fit the triangle count of a binary file.

@@ -8,7 +8,7 @@
 use super::area::{Area, PITCH_MM};
 use super::sweep::{SLACK_MM, Sweep};
 
-/// Number of units in a square, a power of two.
+/// Number of units on the side of a square, a power of two.
 const UNIT: f64 = (1u64 << UNIT_BITS) as f64;
 const UNIT_BITS: u32 = 32;
 

@@ -80,14 +80,14 @@ pub enum BatchTrouble {
     LagUnexpected(u32, u32),
 }
 
-/// What the test of a batch has brought.
+/// Outcome of the test of a batch.
 #[derive(Debug)]
 pub struct BatchOutcome {
     /// A result for each socket of the order.
     pub results: Vec<SocketResult>,
-    /// Troubles, in the order in which they were met.
+    /// Troubles, in the order in which the test met them.
     pub troubles: Vec<BatchTrouble>,
-    /// What an experiment without parts has found; `None` after the test of parts, and after trouble.
+    /// Figures that an experiment without parts has found; `None` after the test of parts, and after trouble.
     pub found: Option<Found>,
 }
 
@@ -123,7 +123,7 @@ pub trait BatchTest: Debug + Send {
     /// Returns the longest time that the test may take; a longer one counts as stuck.
     fn longest(&self) -> Span;
 
-    /// Returns what pages show of the test.
+    /// Returns the progress of the test as pages show it.
     fn shown(&self) -> BatchShown;
 
     /// Returns what the history keeps of air and contacts; `None` for a test without parts, and before the first reading.

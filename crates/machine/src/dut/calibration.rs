@@ -4,7 +4,7 @@ use super::{em_relay, thermostat};
 use crate::gauge::factor::Named;
 use serde::{Deserialize, Serialize};
 
-/// Calibration factors for one kind of device, as the history stores them.
+/// Calibration for one kind of device, as the history stores it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Calibration {
@@ -36,9 +36,9 @@ impl Calibration {
 /// Data that every kind of calibration has.
 #[derive(Debug, Clone)]
 pub struct CalibrationFacts {
-    /// When the factors were found, microseconds since 1970 UTC.
+    /// When the calibration was made, microseconds since 1970 UTC.
     pub made_at_us: i64,
-    /// When they expire, microseconds since 1970 UTC.
+    /// When the calibration expires, microseconds since 1970 UTC.
     pub due_at_us: i64,
     /// True on a simulated rig.
     pub is_simulated: bool,

@@ -62,7 +62,7 @@ impl Finding {
         Kind::ALL.into_iter().flat_map(Kind::findings)
     }
 
-    /// Returns the constant data of the finding.
+    /// Returns the code of the finding and its consequence for the part.
     pub fn entry(self) -> Entry {
         match self {
             Self::EmRelay(finding) => finding.entry(),

@@ -184,7 +184,7 @@ impl Reason {
         ]
     }
 
-    /// Returns the reason with that detail with which it prints as `text`; `None` when no detail does so.
+    /// Returns this reason with the detail that makes it print as `text`; `None` when no detail does.
     fn read(self, text: &str) -> Option<Self> {
         const PLACE: &str = "\0";
         let detailed = |detail: &str| Self {

@@ -64,9 +64,9 @@ pub enum Own {
     Nothing,
     /// Ramps and conditions of an electromagnetic relay.
     EmRelay(Observed),
-    /// What a test of a solid-state relay has measured or used of its fixture.
+    /// Corrections of its fixture that a test of a solid-state relay has measured or used.
     Ssr(Fixture),
-    /// What a batch of temperature relays has shown of chamber and lot.
+    /// Response of the chamber, lag and switching temperatures that a batch of temperature relays has shown.
     Thermostat(Arc<Lesson>),
 }
 
@@ -82,15 +82,15 @@ pub struct TestRecord<T = Own> {
     pub spent: Spent,
     /// Rig time of each stage by its key.
     pub stages: BTreeMap<&'static str, Span>,
-    /// True or false for each characteristic that a test proves at its limits without measuring a value, by the key of
-    /// rows.
+    /// Characteristics whose limits a test checks without measuring a value: the key of each, and true when the part
+    /// keeps its limits.
     pub conforms: Vec<(&'static str, bool)>,
     /// Observations of the kind.
     pub own: T,
 }
 
 impl<T> TestRecord<T> {
-    /// Returns the record in the form that every kind has; `own` wraps the observations.
+    /// Returns the record in the form common to all kinds; `own` wraps the observations.
     pub fn of_any_kind(self, own: impl FnOnce(T) -> Own) -> TestRecord {
         TestRecord {
             readings: self.readings,

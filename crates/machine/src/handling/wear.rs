@@ -30,9 +30,9 @@ impl Uses {
 named! {
     /// A wearing part.
     Wearing {
-        /// Probes; their wear is counted in touches.
+        /// Probes; each touch counts as a use.
         Probes = "probes",
-        /// Jaws; their wear is counted in closings.
+        /// Jaws; each closing counts as a use.
         Jaws = "jaws",
     }
 }

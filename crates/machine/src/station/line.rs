@@ -16,7 +16,7 @@ use crate::rig::point::DigitalInput;
 use std::collections::VecDeque;
 use units::RigTime;
 
-/// What brings parts to their test, with the ledger of the parts.
+/// Feeder or batch of a rack, which brings parts to their test, with the ledger of the parts.
 #[derive(Debug)]
 pub(super) struct Line {
     pub handling: Handling,
@@ -90,7 +90,7 @@ impl FeederLine {
     }
 }
 
-/// Data of lot and person for the turn of a batch.
+/// Facts about lot and run that the turn of a batch needs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BatchTerms<'a> {
     pub device: &'a Device,

@@ -1,7 +1,7 @@
 //! Prompts of the lot under way: while a prompt is open nothing moves until its answer, a stop or an abort.
 //!
-//! A prompt opens in the turn in which its moment comes, stays open while [`Prompts::asks`] is called in each turn, and
-//! closes with its answer, or when the machine leaves the moment (after an abort it opens again).
+//! A prompt opens in the turn in which its moment comes, stays open while the machine calls [`Prompts::asks`] in each
+//! turn, and closes with its answer, or when the machine leaves the moment (after an abort it opens again).
 
 use super::orders::Refused;
 use crate::dut::prompt::{Prompt, PromptMoment};
@@ -31,7 +31,7 @@ impl Prompts {
         self.open.map(|place| &self.all[place])
     }
 
-    /// Begins a turn: no prompt is open until its moment asks for it.
+    /// Begins a turn with no open prompt; [`Prompts::asks`] opens the one of the present moment.
     pub fn turn(&mut self) {
         self.shown = self.open.take();
     }

@@ -1,5 +1,5 @@
 //! The state `Resetting`. With a feeder it homes every actuator, then resumes the sequence to discharge the parts found
-//! inside; with a rack it cools the rack and has interrupted parts unloaded.
+//! inside; with a rack it cools the rack, and a person unloads the parts of an interrupted batch.
 
 use super::Station;
 use super::line::{BatchTerms, Handling};

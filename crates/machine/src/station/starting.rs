@@ -1,4 +1,4 @@
-//! The state `Starting`: without a calibration the probes rise in the empty nest and the references are measured.
+//! The state `Starting`: without a calibration the probes rise in the empty nest and the rig measures its references.
 
 use super::Station;
 use super::line::FeederLine;

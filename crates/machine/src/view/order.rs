@@ -227,7 +227,7 @@ pub struct By {
 /// An order with its outcome, for the audit trail.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AnsweredOrder {
-    /// The order.
+    /// The order as the person gave it.
     pub order: Order,
     /// The person who gave the order.
     pub by: By,

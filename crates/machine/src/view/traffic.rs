@@ -23,9 +23,9 @@ pub struct Message {
     pub way: String,
     /// Characters; non-printable ones as `\r` or `\xNN`.
     pub text: String,
-    /// What the reply says, with its request, in English; empty for a request, unless it goes to all modules.
+    /// Meaning of the reply, with its request, in English; empty for a request, unless it goes to all modules.
     pub meaning: String,
-    /// The same text in Chinese.
+    /// Meaning of the reply in Chinese.
     pub meaning_zh: String,
     /// Digital signals that the reply reads or confirms, by their names in the wiring; true while present.
     pub signals: BTreeMap<String, bool>,

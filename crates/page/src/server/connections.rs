@@ -15,7 +15,7 @@ const HERE: usize = 64;
 /// Places for connections from other computers: some forty screens with six connections each.
 const ELSEWHERE: usize = 256;
 
-/// What a connection has sent, least first.
+/// Rank of a connection by the requests that it has sent, from the lowest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
     /// No whole request.

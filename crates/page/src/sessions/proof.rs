@@ -90,8 +90,8 @@ impl Sessions {
         .await
     }
 
-    /// Returns the value of a right password or code. Fails with `wrong` for a wrong one, which the audit notes, and
-    /// with 429 when the register checked none.
+    /// Returns the value of a right password or code. Fails with `wrong` for a wrong password or code, which the audit
+    /// notes, and with 429 when the register refused to check.
     async fn answered<T>(
         &self,
         answer: Login<T>,

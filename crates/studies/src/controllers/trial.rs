@@ -99,7 +99,7 @@ impl Trial {
         (0..seconds).map(|_| self.second()).collect()
     }
 
-    /// Returns the chamber to the lower end of the ramp.
+    /// Brings the chamber back to the lower end of the ramp, and waits until it has settled.
     pub fn back(&mut self) {
         self.ramp.head_for(ENDS_C[0], 5.0);
         self.run(3600 + BEFORE_S);

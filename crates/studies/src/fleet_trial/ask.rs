@@ -1,4 +1,4 @@
-//! Questions to a database with many made-up rigs.
+//! Measures how long a database with many made-up rigs takes to answer questions.
 
 use super::super::figure::{Bar, Figure};
 use super::super::order::Order;

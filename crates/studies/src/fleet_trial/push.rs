@@ -1,4 +1,4 @@
-//! Sending a history, beside the plain client of the server.
+//! Measures how fast the program sends a history to a database, compared with `psql`, the plain client of the server.
 
 use super::super::figure::{Bar, Figure};
 use super::{timed, wait};

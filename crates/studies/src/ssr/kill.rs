@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// Its parts meet line and loop.
+/// Recipe of the lots: the test of its parts uses line and loop.
 const RECIPE: &str = "ssr-ac-240v-5a-zc";
 /// Parts of each lot: the first one comes with the references of the fixture, the second one without.
 const PARTS: u64 = 2;
@@ -29,7 +29,7 @@ const RELEASE_US: u64 = 10_000;
 /// Time beyond the watchdog after which a contactor counts as closed for good, microseconds.
 const AFTER_US: u64 = 500_000;
 
-/// What the kills have shown.
+/// Result of the kills.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Kills {
     /// Time from the kill until all main contacts were open, microseconds, of each kill that found one closed.

@@ -19,7 +19,7 @@ use super::output::Report;
 /// Parts of each row without `--seeds`.
 pub const PARTS: u64 = 400;
 
-/// Kills of the controller.
+/// Number of kills of the controller.
 const KILLS: u64 = 200;
 
 /// Makes the report from `parts` made-up parts for each row, and from kills of the controller.

@@ -55,7 +55,7 @@ pub fn methods(parts: u64) -> Vec<Figure> {
     all.chain([conformity(parts)]).collect()
 }
 
-/// A ramp that ends when the output conducts.
+/// Returns the error of a ramp that ends when the output conducts, with its seconds.
 fn ramp(parts: u64, rate: f64) -> Figure {
     let mut dice = Dice::new(1);
     let (mut errors, mut seconds) = (Vec::new(), 0.0);
@@ -78,7 +78,8 @@ fn ramp(parts: u64, rate: f64) -> Figure {
     )
 }
 
-/// The search of the controller down to a width in mV, with or without the expectation that earlier parts give.
+/// Returns the error of the controller's search down to a width, mV, with or without the expectation from earlier
+/// parts.
 fn bisect(parts: u64, width_mv: f64, is_expected: bool) -> Figure {
     let mut dice = Dice::new(1);
     let (mut errors, mut seconds) = (Vec::new(), 0.0);
@@ -114,8 +115,8 @@ fn bisect(parts: u64, width_mv: f64, is_expected: bool) -> Figure {
     }
 }
 
-/// One step a guard band below the limit: share of the parts beyond the limit that it accepts. The thresholds lie within
-/// 20 mV of the limit.
+/// Returns the share of the parts beyond the limit that one step, a guard band below the limit, accepts. The thresholds
+/// lie within 20 mV of the limit.
 fn conformity(parts: u64) -> Figure {
     let mut dice = Dice::new(1);
     let (mut beyond, mut accepted) = (0, 0);

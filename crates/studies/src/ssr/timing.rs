@@ -7,7 +7,7 @@ use machine::dut::ssr::edges::edges as found;
 
 /// Time to read one sample of two channels, s.
 const READ_S: f64 = 1.6e-6;
-/// Control pulse, record, and the time of the pulse in it, s.
+/// Lengths of the control pulse and of the record, and begin of the record relative to the pulse, s.
 const PULSE_S: f64 = 2e-3;
 const RECORD_S: f64 = 4.4e-3;
 const BEGINS_S: f64 = -0.44e-3;

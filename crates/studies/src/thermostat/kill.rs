@@ -31,16 +31,16 @@ const INSTANTS_S: [u64; 2] = [400, 3000];
 const LOOK_S: u64 = 30;
 const SECOND_US: u64 = 1_000_000;
 
-/// What the kills have shown.
+/// Result of the kills.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Kills {
-    /// Kills while the contactor of the heater was closed.
+    /// Number of kills while the contactor of the heater was closed.
     pub heating: u64,
-    /// Kills after which an output was not safe within the time of the watchdog.
+    /// Number of kills after which an output was not safe within the time of the watchdog.
     pub unsafe_after: u64,
-    /// Starts on a hot rack.
+    /// Number of starts on a hot rack.
     pub hot: u64,
-    /// Starts that unlocked a hot rack, closed its contactor or did not cool it.
+    /// Number of starts that unlocked a hot rack, closed its contactor or did not cool it.
     pub wrong_starts: u64,
     /// Causes of the lives that ended by themselves.
     pub ended: Vec<String>,

@@ -38,7 +38,7 @@ pub struct World {
     pub scatter_k: f64,
     /// Ratio of the power of the heater to the nominal one.
     pub mains: f64,
-    /// The same ratio after a step of the mains in the middle of a batch.
+    /// Ratio of the power of the heater to the nominal one after a step of the mains in the middle of a batch.
     pub mains_later: f64,
     /// Temperature of the room, C; `None` draws it from 18 to 28 C.
     pub ambient_c: Option<f64>,
@@ -49,7 +49,7 @@ pub struct World {
 /// Scatter of a switching in the default world, which the estimates assume, K.
 pub const SCATTER_K: f64 = 0.15;
 
-/// The default world.
+/// Nominal lag and mains, cold parts, a room of 18 to 28 C.
 pub const DEFAULT: World = World {
     name: "default world",
     lag: [1.0; 2],

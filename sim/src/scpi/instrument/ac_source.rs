@@ -17,7 +17,7 @@ const SAMPLES: u32 = 500;
 /// Interval at which the source checks its current, microseconds; the next number is how many intervals make one rms.
 const WATCH_US: u64 = 1_250;
 const WATCHED: usize = 16;
-/// Bit of the questionable status that is set when the limit has switched the output off.
+/// Bit of the questionable status: the current limit has switched the output off.
 const OVERCURRENT: u8 = 2;
 /// Highest voltage of the lower range, volts rms.
 const LOW_V: f64 = 150.0;
@@ -53,7 +53,8 @@ pub(super) struct AcSource {
     body: Body,
     job: Option<Window>,
     last: Option<Window>,
-    /// Instant at which the output switches off after a command: the programmed phase.
+    /// Instant at which the output switches off after the command to do so: when the voltage reaches the programmed
+    /// phase, microseconds.
     off_us: Option<u64>,
     /// Instant of the next check of the current while the output is on; the next field holds the squares of the last
     /// currents.

@@ -249,7 +249,7 @@ impl Digitizer {
         Ok(Outcome::Block(block(&bytes, digits), busy_us))
     }
 
-    /// Updates the settings that depend on the changed one, because several commands set the same quantity.
+    /// Updates the settings that state the changed quantity in another way: scale and range, position and offset.
     fn follow(&mut self, Changed { key, channel, .. }: Changed) {
         let settings = &mut self.body.settings;
         match key {

@@ -26,7 +26,7 @@ pub(super) struct Range {
     /// Displayed volts per volt or ampere at the terminals.
     factor: f64,
     is_inverted: bool,
-    /// Width, displayed volts.
+    /// Width of the range, displayed volts.
     pub(super) full_v: f64,
     /// Volts that the offset adds before the converter.
     pub(super) offset_v: f64,
@@ -118,7 +118,7 @@ fn attenuator(scale_v: f64) -> i32 {
 }
 
 impl Range {
-    /// Returns what the channel shows without noise, displayed volts.
+    /// Returns the signal with the errors of the channel but without noise, displayed volts.
     fn distorted(&self, volts: f64) -> f64 {
         let part = (2.0 * volts / self.full_v).clamp(-1.0, 1.0);
         // 0 in the middle and at both ends; the factor makes the greatest value 1.

@@ -34,11 +34,11 @@ pub enum Outcome {
     AfterJob,
 }
 
-/// Present instant, and the circuit at this instant.
+/// An instant, and the circuit at this instant.
 pub struct Moment<'a> {
     /// Microseconds since the bench began.
     pub now_us: u64,
-    /// What the instruments connect to, advanced to this instant.
+    /// Circuit to which the instruments connect, advanced to `now_us`.
     pub circuit: &'a mut dyn Circuit,
 }
 
@@ -87,11 +87,11 @@ pub trait Instrument: Send {
         None
     }
 
-    /// Runs the step of the job that is due.
+    /// Runs the due step of the job.
     fn tick(&mut self, at: &mut Moment<'_>);
 
-    /// Runs the step of the job that is due. An instrument may go on with the steps before `end_us`: until then nothing
-    /// but the circuit acts. Leaves circuit and instant at the last step.
+    /// Runs the due step of the job, and may run further steps before `end_us`, because only the circuit acts until
+    /// then. Leaves `at` at the last step that it ran.
     fn run(&mut self, at: &mut Moment<'_>, _end_us: u64) {
         self.tick(at);
     }

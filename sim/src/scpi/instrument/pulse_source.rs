@@ -120,7 +120,8 @@ impl PulseSource {
         circuit.drive(self.body.at, Drive::Pulses(pulses));
     }
 
-    /// Updates the settings that depend on the changed one, because several commands set the same quantity.
+    /// Updates the settings that state the changed quantity in another way: frequency and period, levels and peak with
+    /// offset.
     fn follow(&mut self, Changed { key, before, .. }: Changed) -> Result<(), Failure> {
         let settings = &mut self.body.settings;
         let number = |settings: &Settings, key| settings.number(key);

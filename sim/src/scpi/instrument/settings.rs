@@ -1,4 +1,4 @@
-//! A table of settings: commands set them, queries return them.
+//! A table of settings with their SCPI headers: commands set them, queries return them.
 
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
@@ -25,7 +25,7 @@ pub(super) struct Settings {
     values: Vec<Vec<f64>>,
 }
 
-/// A setting that a command has changed.
+/// A setting after its change by a command.
 #[derive(Debug, Clone, Copy)]
 pub struct Changed {
     pub(super) key: &'static str,
@@ -35,7 +35,7 @@ pub struct Changed {
     pub(super) before: f64,
 }
 
-/// Result of a unit that names a setting.
+/// Result of a message unit whose header names a setting.
 pub(super) enum Handled {
     /// Reply to a query.
     Query(String),
@@ -99,7 +99,7 @@ impl Settings {
         self.values[index][channel] = value;
     }
 
-    /// Executes a unit that names a setting; `None` when no setting has this header.
+    /// Executes a message unit; `None` when its header names no setting.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.

@@ -2,7 +2,7 @@
 
 use super::truth::Truth;
 
-/// Light over threshold; the output switches on at 1 and off at the hysteresis.
+/// Light divided by its threshold; the output switches on at 1 and off at the hysteresis, below 1.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Light {
     level: f64,
@@ -15,7 +15,8 @@ impl Light {
         self.lit
     }
 
-    /// Moves the light towards the input current over its threshold; exact for a constant current.
+    /// Moves the light for `dt_s` towards `goal`, the input current divided by its threshold; exact for a constant
+    /// current.
     pub fn advance(&mut self, goal: f64, truth: &Truth, dt_s: f64) {
         let kept = (-dt_s / Self::tau_s(self.level, goal, truth)).exp();
         self.level = goal + (self.level - goal) * kept;
@@ -23,7 +24,7 @@ impl Light {
         self.lit = self.level >= least;
     }
 
-    /// Returns the time until the output switches, seconds from 0; `None` when this input current never does it.
+    /// Returns the time until the output switches, seconds; `None` when this input current never switches it.
     pub fn switch_s(&self, goal: f64, truth: &Truth) -> Option<f64> {
         let limit = if self.lit { truth.hysteresis } else { 1.0 };
         let (rest, whole) = match self.lit {
@@ -36,7 +37,7 @@ impl Light {
         Some(Self::tau_s(self.level, goal, truth) * (whole / rest).ln().max(0.0))
     }
 
-    /// Switches the output now, at the end of the time that [`Light::switch_s`] has given.
+    /// Switches the output at the end of the time that [`Light::switch_s`] returned, whatever rounding left.
     pub fn switch(&mut self, on: bool, truth: &Truth) {
         self.lit = on;
         self.level = if on { 1.0 } else { truth.hysteresis };

@@ -24,8 +24,8 @@ impl PairLimits {
         (0..ACTUATORS.len()).any(|n| self.by[n] && moved[n])
     }
 
-    /// Returns the permitted depth while these actuators move, mm. With `slack`, a grip yields without damage, and any
-    /// actuator may pull at it.
+    /// Returns the permitted depth while these actuators move, mm. With `slack`, a grip slides without damage,
+    /// whichever actuator pulls the two bodies apart.
     pub fn allowed(&self, moved: &[bool; 8], slack: bool) -> f64 {
         let Some((deeper_mm, by)) = &self.deeper else {
             return self.depth_mm;

@@ -8,7 +8,7 @@ use crate::table::{Entry, Read, read_fields, read_words};
 pub struct Element {
     /// Name.
     pub id: String,
-    /// Actuator that carries it; `None` for a fixed body.
+    /// Actuator that carries the element; `None` for a fixed body.
     pub rides: Option<String>,
     /// Shape and pose.
     pub body: Body,

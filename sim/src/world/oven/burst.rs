@@ -24,8 +24,8 @@ pub struct BurstFiring {
 }
 
 impl BurstFiring {
-    /// Advances to the next switching of the unit, at most by `most_us`; returns the time, and whether the unit
-    /// conducted in it. A new `duty` (0 to 1, clamped) takes effect at the next base.
+    /// Advances to the next switching of the unit, at most by `most_us`; returns the time advanced, microseconds, and
+    /// true when the unit conducted in it. A new `duty` (0 to 1, clamped) takes effect at the next base.
     pub fn run(&mut self, duty: f64, most_us: u64) -> (u64, bool) {
         if self.phase_us == 0 {
             self.begin(duty);

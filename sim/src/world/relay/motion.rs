@@ -37,9 +37,9 @@ const STILL_V: f64 = 1e-6;
 /// Rig time spent at each level of detail of the motion, s.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Levels {
-    /// Armature pressed on a stop.
+    /// Time with the armature pressed on a stop, s.
     pub held_s: f64,
-    /// All five states integrated.
+    /// Time with all five states integrated, s.
     pub moving_s: f64,
 }
 

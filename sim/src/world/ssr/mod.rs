@@ -37,7 +37,7 @@ pub struct Ssr {
 /// Change of the temperature from which its effects are computed anew, kelvin.
 const STALE_K: f64 = 1e-4;
 
-/// What the temperature of the junction decides.
+/// Values of the part at a temperature of its junction.
 #[derive(Debug, Clone, Copy)]
 struct AtTemperature {
     celsius: f64,

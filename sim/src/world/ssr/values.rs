@@ -1,7 +1,7 @@
-//! True values of one solid-state relay, and what its definitions make of them.
+//! True values of one solid-state relay, and its characteristics as the test defines them.
 //!
-//! All figures hold at the temperature at which the part comes into the nest. Current through the part warms it, so
-//! a figure measured after other ones differs: 1 A in the default on-state resistance warms the junction by half a
+//! All figures hold at the temperature at which the part comes into the nest. Current warms the part, so a
+//! characteristic measured after others differs: 1 A in the default on-state resistance warms the junction by half a
 //! kelvin, which raises drop and resistance by 0.3 % and the leakage by 4 % until the junction has cooled (20 ms).
 
 use crate::scpi::relay::{Heat, Light, Truth as Model};
@@ -9,7 +9,7 @@ use crate::world::probes::Pins;
 
 /// Current of the drift and of the hot leakage, amperes.
 pub const WARM_A: f64 = 1.0;
-/// Instants after the begin of that current between which the drop drifts, milliseconds.
+/// Instants after the begin of [`WARM_A`] between which the drift of the drop counts, milliseconds.
 pub const DRIFT_MS: [u64; 2] = [10, 200];
 
 /// Ratings of the recipe at which the figures are defined.
@@ -44,7 +44,7 @@ pub struct Values {
     pub pins: Pins,
 }
 
-/// What [`WARM_A`] through a cold part shows.
+/// Effect of the current [`WARM_A`] on a part that was cold.
 #[derive(Debug, Clone, Copy)]
 pub struct WarmUp {
     /// Change of the drop from the first to the second instant of [`DRIFT_MS`], volts.

@@ -26,7 +26,8 @@ impl SsrBoard {
         self.touch();
     }
 
-    /// Returns what an instrument or probe finds at its terminals; at the pulse source that is the control input.
+    /// Returns the voltage and current that an instrument or probe finds at a terminal; [`Terminal::Pulse`] is the
+    /// control input.
     pub fn at(&self, terminal: Terminal, part: Option<&Specimen>) -> Reading {
         let part = part.and_then(Specimen::as_ssr);
         // A probe takes no current.
@@ -112,7 +113,7 @@ impl SsrBoard {
         self.touching && self.reference == Reference::Part && present[2] && present[3]
     }
 
-    /// Returns what is connected to the socket beside the source-measure unit.
+    /// Returns the network at the socket without the source-measure unit.
     pub(super) fn network(&self, part: Option<&Ssr>) -> Network {
         let table = &self.table;
         let mut network = Network {

@@ -44,7 +44,7 @@ const LOOK_US: f64 = 100.0;
 /// and the clock would stand still.
 const EDGE_US: f64 = 1e-3;
 
-/// What stands in place of the output of the part.
+/// Output of the part, or the reference in its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Reference {
     Part,

@@ -1,7 +1,7 @@
 //! One node with a capacitor: what is connected to it, and a source with a current limit.
 //!
-//! Between two events everything is linear, so the voltage follows exponentials: towards the source while the source
-//! gives less than its limit, before that towards the point at which the others take the whole limit.
+//! Between two events everything is linear, so the voltage follows exponentials: while the source gives its limit,
+//! towards the point at which the others take this whole current; after that towards the source.
 
 /// Conductances, currents and capacitance at a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -14,7 +14,8 @@ pub struct Network {
     pub farads: f64,
 }
 
-/// A voltage source behind a resistance, with a current limit; a current source is one whose voltage is its limit.
+/// A voltage source behind a resistance, with a current limit; a current source is such a source at its limit, its
+/// compliance the voltage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limited {
     /// Volts without load.
@@ -37,7 +38,7 @@ impl Network {
         self.amps += volts / ohms;
     }
 
-    /// Returns the voltage `dt_s` after it was `volts`.
+    /// Returns the voltage of the node `dt_s` after it was `volts`.
     pub fn after(&self, volts: f64, source: Option<Limited>, dt_s: f64) -> f64 {
         let Some(source) = source else {
             return self.towards(volts, self.amps, self.siemens, dt_s);

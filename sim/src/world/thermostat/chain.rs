@@ -10,7 +10,8 @@ pub struct Chain {
     limiter_tripped: bool,
     /// Instant since which the fan has moved enough air, microseconds.
     airflow_since_us: Option<u64>,
-    /// Instant until which a fault holds the door open, microseconds; the next field is the same of the emergency stop.
+    /// Instant until which a fault holds the door open, microseconds; the next field is that until which one holds the
+    /// emergency stop.
     door_held_us: u64,
     emergency_stop_held_us: u64,
     /// True while the person has the door open.

@@ -90,8 +90,8 @@ impl Lot {
     }
 }
 
-/// Moves the means of a family to the middle of the limits of a recipe; returns family and limits. An open limit is
-/// assumed [`OPEN_LIMIT_K`] from the mean.
+/// Moves the means of a family to the middle of the limits of a recipe; returns family and limits. An open limit counts
+/// as [`OPEN_LIMIT_K`] from the mean.
 fn fitted(mut part: PartTable, recipe: &Table) -> Result<(PartTable, Limits), ConfigError> {
     let limits: Option<Table> = recipe.get("limits")?;
     let read = |key| match &limits {

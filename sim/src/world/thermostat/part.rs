@@ -30,7 +30,7 @@ pub enum Stuck {
 /// A contact that flips near the operate temperature.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chatter {
-    /// Half width of the band around that temperature, kelvin.
+    /// Half width of the band around the operate temperature, kelvin.
     pub band_k: f64,
     /// Changes per second inside the band.
     pub per_s: f64,
@@ -39,7 +39,7 @@ pub struct Chatter {
 /// A closed contact that opens from time to time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Intermittent {
-    /// Share of the time in which it is open.
+    /// Share of the time in which the contact is open.
     pub share: f64,
     /// Shortest and longest opening, milliseconds.
     pub open_ms: [f64; 2],

@@ -15,7 +15,7 @@ pub enum Task {
     Load,
 }
 
-/// What the person sees.
+/// Signals and parts that the person sees.
 #[derive(Debug, Clone, Copy)]
 pub struct Sight {
     /// True when the lock lets the door open.

@@ -58,7 +58,7 @@ pub const SELECT: [Out; 7] = [
 /// A digital input: a signal of the rig, or the contact of the socket at a place in the rack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Input {
-    /// A signal of the rig.
+    /// A signal to the controller that is no contact of a socket.
     Signal(In),
     /// The contact of the socket at this place.
     Socket(usize),

@@ -7,9 +7,9 @@ use crate::tune::{Identified, fit};
 impl Identification {
     /// Returns the standard uncertainties of the figures of a run that is over.
     ///
-    /// Those of gain, time constant, delay and slope follow from the misfit of the model. Loss, fan and vent come from
-    /// slopes of the reading over stretches of some minutes; the noise of the reading and the uncertainty of the slope of
-    /// the model make theirs.
+    /// The uncertainties of gain, time constant, delay and slope follow from the misfit of the model. Loss, fan and
+    /// vent come from slopes of the reading over stretches of some minutes; their uncertainties follow from the noise
+    /// of the reading and from the uncertainty of the slope of the model.
     pub fn doubt(&self, found: &Identified) -> Identified {
         let (response, ..) = self.response();
         let parts = fit::TwoPart {

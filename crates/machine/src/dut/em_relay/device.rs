@@ -35,7 +35,7 @@ pub struct Device {
     /// Models of the coarse overshoot, operate and release, learned from reference parts and from every good part of
     /// the lot.
     coarse: (OvershootModel, OvershootModel),
-    /// The same models, learned from parts of this lot alone.
+    /// Models of the coarse overshoot, operate and release, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
     probe_contact: Trend,
     promises: Promises,

@@ -1,5 +1,5 @@
-//! Uncertainty budgets of AC parts, from the accuracies of digitizer, source and shunts and the terms of each method
-//! (ssr.md, section 5).
+//! Uncertainty budgets of AC parts, from the accuracies of digitizer, source and shunts and from the terms of each
+//! method.
 
 use super::ac_plan::{AcPlan, CLAMP_V, SHUNT_ERROR};
 use super::measure::line::leakage::Leak;
@@ -102,7 +102,7 @@ pub fn from_trigger(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) ->
         .with_random_bounds("trigger", walk.step_s / 2.0 * 1e6)
 }
 
-/// Returns the error of the base of time over the whole train, half width, microseconds.
+/// Returns the error of the time base over the whole train, half width, microseconds.
 fn base_us(plan: &Plan, walk: &Walk) -> f64 {
     let ends_s = walk.answers.last().map_or(0.0, |it| it.pulse.end_s);
     (plan.time.gain(ends_s) + plan.time.offset) * 1e6
@@ -183,8 +183,8 @@ pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
     Budget::default().with_bounds("offset", offset_v / mean_v * 100.0)
 }
 
-/// Returns the budget of the rise of the drop, mV. Offsets cancel. It begins with one period of the record, a
-/// tenth of its samples, and ends with [`LATE`] of them.
+/// Returns the budget of the rise of the drop, mV, from the first period of the record, a tenth of its samples, to the
+/// last [`LATE`] periods. The offset is in both drops and cancels.
 pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
     let gain_share = gain(ac, on.is_referenced);
     let noise_v = (10.0 + 10.0 / LATE as f64).sqrt() * on.noise_v;

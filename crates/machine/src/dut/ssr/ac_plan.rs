@@ -1,7 +1,7 @@
 //! Levels, scales and times of the test of an AC part.
 //!
-//! The line is the source with 2.3 kohm and 1 ohm in series with the output. The loop is the source with 4.7 ohm and 10
-//! mohm in series with it.
+//! The line is the source in series with the output and 2.3 kohm, 1 ohm of it the shunt. The loop is the source in
+//! series with the output and 4.7 ohm, 10 mohm of it the shunt.
 
 use super::parameter::Parameter;
 use super::recipe::{Output, SsrRecipe};
@@ -31,14 +31,15 @@ const HALF_SCREEN: f64 = 3.5;
 const REFERENCE: f64 = 0.8;
 /// Ratio of the end of a scale to the limit that it must show.
 const ROOM: f64 = 1.2;
-/// Drop (V peak) and, in the next line, leakage (A rms) for which scales are chosen when the recipe has no limit.
+/// Drop (V peak) and, in the next line, leakage (A rms) that choose the scales when the recipe has no limit.
 const USUAL_DROP_V: f64 = 2.0;
 const USUAL_LEAKAGE_A: f64 = 5e-3;
 /// Least scale of the shunt channel, V per division.
 const LEAST_SCALE_V: f64 = 0.5e-3;
 /// Periods of the mains in the record of a leakage.
 const LEAKAGE_PERIODS: f64 = 3.0;
-/// Samples of that record; more of them only take longer to read, since their noise is small against the other errors.
+/// Samples of the record of a leakage; more would only take longer to read, since their noise is small against the
+/// other errors.
 const LEAKAGE_POINTS: f64 = 4e3;
 /// Periods for which a record shows whether an output blocks.
 const BLOCKS_PERIODS: f64 = 1.5;
@@ -152,8 +153,7 @@ impl AcPlan {
         (2.0 * level_v / ohm).clamp(1.0, 12.0)
     }
 
-    /// Returns the time from one pulse of the train to the next, s. It shifts the phase of the mains from pulse to
-    /// pulse.
+    /// Returns the time from one pulse of the train to the next, s: each pulse meets another phase of the mains.
     pub fn period_s(&self) -> f64 {
         (BETWEEN_HALVES + 1.0 / self.phases) * self.half_s()
     }
@@ -195,7 +195,7 @@ impl AcPlan {
         (wait_s + 2.0 * periods * self.half_s()) / (1.0 - BEFORE)
     }
 
-    /// Returns the scales of the record of a train.
+    /// Returns the scales of the record of a train of pulses.
     pub fn train(&self) -> Scales {
         let points = if self.phases > 12.0 { 1e5 } else { 2e4 };
         self.line(self.phases * self.period_s() / (1.0 - BEFORE), points)
@@ -213,7 +213,8 @@ impl AcPlan {
         }
     }
 
-    /// Returns the scales of a record of the line.
+    /// Returns the scales of a record on the line, of this length and number of samples, for an output that may block
+    /// or conduct.
     pub fn line(&self, record_s: f64, points: f64) -> Scales {
         let load_a = self.peak_v() / LINE_OHM;
         Scales {

@@ -12,13 +12,13 @@ pub const LAST_DROPS: usize = 2;
 /// Averaging time of the reading that shows whether a leakage has settled, periods of the mains.
 const BRIEF: f64 = 0.1;
 
-/// Returns the standard uncertainty of an applied or measured value: gain and offset, without noise.
+/// Returns the standard uncertainty of an applied or measured value, in its unit: gain and offset, without noise.
 pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
     rectangular(accuracy.gain(value)).hypot(rectangular(accuracy.offset))
 }
 
-/// Returns the budget of a current in multiples of `unit_a` amperes. `moved` is the difference of two readings one after
-/// the other, A, which shows how far the current has settled.
+/// Returns the budget of a current in multiples of `unit_a` amperes. `moved` is the difference of two successive
+/// readings, A, which bounds what has yet to settle.
 pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Budget {
     let meter = &range.meter;
     Budget::default()
@@ -28,7 +28,7 @@ pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Bu
         .with_random("noise", meter.noise_over(range.periods) / unit_a)
 }
 
-/// Returns the budget of a leakage, microamperes, of which the current of the open fixture is subtracted when it is known.
+/// Returns the budget of a leakage, microamperes; the test subtracts the current of the open fixture when it is known.
 /// The difference has the noise of both readings, and no offset.
 pub fn leakage(
     range: &CurrentRange,
@@ -77,9 +77,9 @@ pub fn time(plan: &Plan, step_s: f64, control: &Crossing, output: &Crossing) -> 
 }
 
 /// Returns the budget of a resistance, milliohms, from the drops at half and at full current. The offsets of source and
-/// meter are the same at both and cancel. `heated_v` is the rise of the drop by heat during the measurement, V. The first
-/// reading is warmer than the part was, and the last one is warmer than its own current explains: one makes up for most of
-/// the other, and half of the rise is left where the time constant of the junction is 10 to 40 ms.
+/// meter are the same at both and cancel. `heated_v` is the rise of the drop by heat during the measurement, V. In the
+/// first reading the part is warmer than before the measurement, in the last one warmer than its current alone makes
+/// it. These two errors mostly cancel: half of the rise is left when the time constant of the junction is 10 to 40 ms.
 pub fn resistance(plan: &DcPlan, ohm: f64, heated_v: f64) -> Budget {
     let (source, meter) = (&plan.drop.source, &plan.drop.meter);
     let apart_a = plan.drop_a / 2.0;
@@ -101,7 +101,7 @@ pub fn drop_at_rated(plan: &DcPlan, resistance: &Budget) -> Budget {
     budget
 }
 
-/// Returns the budget of a rise of the drop, mV. Offsets cancel.
+/// Returns the budget, mV, of a rise of the drop by heat; the offset of the meter cancels between the two readings.
 pub fn drift(plan: &DcPlan, rise_v: f64) -> Budget {
     let meter = &plan.drop.meter;
     let noise_v = meter

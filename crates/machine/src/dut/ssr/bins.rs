@@ -4,7 +4,7 @@ use crate::rig::bin::Bin;
 
 /// Control input: open or shorted LED, wrong input current, aged LED.
 pub const INPUT: Bin = Bin::named("input");
-/// Output: shorted, too much drop, heat that does not leave, never off, never on.
+/// Output: shorted, too much drop, poor heat transfer, never off, never on.
 pub const OUTPUT: Bin = Bin::named("output");
 /// Leakage of the blocked output.
 pub const LEAKAGE: Bin = Bin::named("leakage");

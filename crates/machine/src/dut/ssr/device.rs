@@ -13,7 +13,7 @@ use crate::rig::point::MissingPoint;
 use std::sync::Arc;
 use units::RigTime;
 
-/// A recipe on a rig, with what the lot has shown so far.
+/// A recipe on a rig, with the thresholds and corrections that the lot has shown so far.
 #[derive(Debug, Clone)]
 pub struct Device {
     /// The recipe.
@@ -26,7 +26,7 @@ pub struct Device {
     pub learned: Learned,
     /// Number of parts of the lot that have been judged.
     pub judged: u32,
-    /// What the fixture has shown to an earlier part.
+    /// Corrections of the fixture, from the test of an earlier part.
     pub fixture: Fixture,
 }
 

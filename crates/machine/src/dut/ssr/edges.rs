@@ -19,7 +19,7 @@ const JUMP: f64 = 0.5;
 const DISTINCT: f64 = 8.0;
 /// Codes that a converter of 8 bits has at least between the levels of a signal.
 const FEWEST_CODES: f64 = 100.0;
-/// Samples on either side over which the slope of an edge is taken.
+/// Number of samples on either side of an edge that give its slope.
 const AROUND: usize = 2;
 /// Least number of samples before, during and after the pulse.
 const FEWEST: usize = 8;
@@ -44,9 +44,10 @@ pub struct Edges {
     pub rise: Crossing,
     /// Fall of the control to half of its height.
     pub fall: Crossing,
-    /// The load at 90 % of its voltage; none when it is not there before the pulse ends.
+    /// Rise of the load to 90 % of its voltage; `None` when the load does not reach it before the pulse ends.
     pub on: Option<Crossing>,
-    /// The load at 10 % of its voltage; none when it is not there at the end of the record, or was never on.
+    /// Fall of the load to 10 % of its voltage; `None` when the load does not reach it before the end of the record, or
+    /// was never on.
     pub off: Option<Crossing>,
 }
 
@@ -141,7 +142,8 @@ impl Signal {
         })
     }
 
-    /// Returns the standard deviation of samples of a level, at least that of the steps of the converter.
+    /// Returns the standard deviation of samples of a level, V; at least that of rounding to the steps of the
+    /// converter.
     fn noise_v(&self, range: Range<usize>) -> f64 {
         let level = &self.volts[range];
         let mean = level.iter().sum::<f64>() / level.len() as f64;
@@ -150,7 +152,8 @@ impl Signal {
         deviation.max(resolution(self.quantum_v()))
     }
 
-    /// Returns the smallest step between two values of the converter, V; at most what a converter of 8 bits has.
+    /// Returns the smallest difference of two samples, V: a step of the converter; at most that of a converter of 8
+    /// bits.
     fn quantum_v(&self) -> f64 {
         let values = sorted(&self.volts);
         let span_v = values[values.len() - 1] - values[0];

@@ -6,7 +6,7 @@ use crate::dut::Reason;
 use crate::dut::finding::Entry;
 use crate::gauge::Side;
 
-/// A finding.
+/// Why a part fails, or why it could not be judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
     /// A force probe and its sense probe touch no common pin; detail: the pins.
@@ -134,7 +134,7 @@ impl Finding {
         }
     }
 
-    /// Returns the reason with `detail`, the names that its text contains.
+    /// Returns the reason of the finding, with `detail`: the names that the text shows.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
             detail: detail.into(),

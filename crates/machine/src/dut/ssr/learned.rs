@@ -5,7 +5,7 @@ use super::parameter::Parameter;
 use super::search::{Direction, Expected};
 use crate::dut::TestRecord;
 
-/// Number of parts from which on an expectation is used.
+/// Number of parts from which on a search starts from their thresholds.
 const ENOUGH: u32 = 5;
 /// Reach of the search in standard deviations between parts: one part in twenty takes a step more.
 const REACH: f64 = 2.0;
@@ -63,7 +63,7 @@ impl Learned {
         }
     }
 
-    /// Returns where a threshold is to be expected; `turn_on_v` is the turn-on voltage of this part, once it is known.
+    /// Returns the threshold to expect; `turn_on_v` is the turn-on voltage of this part, V, once it is known.
     pub fn expected(&self, direction: Direction, turn_on_v: Option<f64>) -> Option<Expected> {
         let (at_v, sd_v) = match direction {
             Direction::Rising => self.turn_on.known()?,

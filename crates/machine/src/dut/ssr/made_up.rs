@@ -6,7 +6,8 @@ use crate::dut::made_up::{MadeUp, Scatter};
 use crate::dut::recipe::Limits;
 use crate::gauge::Budget;
 
-/// Place of the mean between 0 and a limit without a partner, as a share of it.
+/// Ratio of the mean to an upper limit without a lower one; the next constant is that to a lower limit without an upper
+/// one.
 const BELOW: f64 = 0.6;
 const ABOVE: f64 = 1.6;
 /// Standard deviation as a share of the mean.
@@ -14,7 +15,7 @@ const SPREAD: f64 = 0.05;
 /// Standard uncertainty as a share of the mean.
 const DOUBT: f64 = 0.002;
 
-/// Returns the scatter of every characteristic: between its limits, or well inside the only one.
+/// Returns the scatter of every characteristic: midway between its limits, or well inside the only one.
 pub fn made_up(ssr: &SsrRecipe, limits: &Limits) -> MadeUp {
     let one = |of: Parameter| {
         let limit = limits.of(of);

@@ -13,7 +13,7 @@
 //! | where the edges of a record are | [`edges`] |
 //! | what a record of line or loop shows | [`wave`] |
 //! | how a search finds a threshold, and where it begins | [`search`], [`learned`] |
-//! | what a test finds in addition to figures | [`finding`] |
+//! | why a part fails or stays unjudged, besides its figures | [`finding`] |
 //! | whether a rig can carry out a recipe | [`feasible`] |
 //! | the test | [`measure`] |
 //! | the process card | [`card`] |

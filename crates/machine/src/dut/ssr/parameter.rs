@@ -31,7 +31,7 @@ pub enum Parameter {
     OnResistance,
     /// Current of the blocked output at its rated voltage, before the output has conducted.
     LeakageCold,
-    /// The same after the output has conducted.
+    /// Current of the blocked output at its rated voltage, after the output has conducted.
     LeakageHot,
     /// Part of the leakage in phase with the voltage.
     LeakageResistive,
@@ -129,7 +129,7 @@ impl Parameter {
 }
 
 impl Parameter {
-    /// Returns true for a characteristic that a recipe may measure on some parts of a lot alone.
+    /// Returns true for a characteristic that a recipe may measure on a sample of the lot instead of on every part.
     pub const fn is_sampled(self) -> bool {
         matches!(self, Self::DcOffset | Self::Distortion)
     }

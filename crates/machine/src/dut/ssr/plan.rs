@@ -18,22 +18,22 @@ pub const LOAD_V: f64 = 8.0;
 pub const LOAD_OHM: f64 = 1000.0;
 /// Resistance of the pulse source, ohm.
 pub const PULSE_OHM: f64 = 50.0;
-/// Largest current with which the resistance is measured, A.
+/// Largest current for measuring the resistance, A.
 const MOST_A: f64 = 1.0;
 /// Room above a limit that a range must have.
 const ROOM: f64 = 1.2;
-/// Time constants after which an output has settled where no limit says more.
+/// Number of time constants after which an output counts as settled where the recipe limits no time.
 const SETTLED: f64 = 10.0;
-/// Currents and drop for which ranges are chosen where the recipe has no limit: A, A, V.
+/// Currents, A, and drop, V, that choose the ranges where the recipe has no limit.
 const USUAL_INPUT_A: f64 = 0.05;
 const USUAL_SMALL_A: f64 = 1e-3;
 const USUAL_DROP_V: f64 = 1.5;
-/// Largest share of the load current at which an output without a limit of its leakage counts as blocked.
+/// Share of the load current up to which an output counts as blocked where the recipe does not limit its leakage.
 const OFF: f64 = 0.1;
 /// Period over which meters average, s: one of 50 Hz mains.
 pub const PERIOD_S: f64 = 0.02;
 
-/// Range of a source of voltage that measures its current; the limit of the current is the end of the meter's range.
+/// Range of a voltage source that measures its own current; it limits the current at the end of the meter's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurrentRange {
     /// Errors of the voltage.
@@ -100,9 +100,9 @@ pub struct Plan {
     pub reverse: CurrentRange,
     /// Ranges of the load circuit.
     pub load: CurrentRange,
-    /// Errors of the digitizer's base of time.
+    /// Errors of the time base of the digitizer.
     pub time: Accuracy,
-    /// Number of parts of a lot of which the sampled characteristics are measured; none for all.
+    /// Number of parts of a lot of which the test measures the sampled characteristics; `None` for all parts.
     pub sampling: Option<u32>,
     /// Characteristics with a limit; the others sort no part.
     pub judged: Vec<Parameter>,
@@ -128,7 +128,7 @@ pub struct DcPlan {
     pub rated_v: f64,
     /// Current of the conducting output, A.
     pub rated_a: f64,
-    /// Larger of the two currents at which the resistance is measured, A; the other is half of it.
+    /// Larger of the two currents that measure the resistance, A; the other is half of it.
     pub drop_a: f64,
     /// True when the reversed output conducts through its body diode.
     pub body_diode: bool,
@@ -269,14 +269,16 @@ impl Plan {
         }
     }
 
-    /// Returns the time that the output needs to follow a step of a search. Close to its threshold it turns on late, by
-    /// one time constant times ln(V / distance); this time shows every threshold but those within [`Self::unseen_v`].
+    /// Returns how long a search waits at each step for the output to follow. Close to the threshold the output turns
+    /// on late, by one time constant times ln(V / distance); in this time it follows every step farther from the
+    /// threshold than [`Self::unseen_v`].
     pub fn dwell(&self) -> Span {
         let constants = (self.turn_on_v.unwrap_or(self.control_v) / self.unseen_v()).ln();
         Span::seconds(constants.max(1.0) * self.time_constant_s)
     }
 
-    /// Returns the distance from its threshold within which the output may not have followed a step in time, V.
+    /// Returns the distance of the control voltage from the threshold, V, below which the output may switch later than
+    /// [`Self::dwell`].
     pub fn unseen_v(&self) -> f64 {
         self.resolution_v / 8.0
     }

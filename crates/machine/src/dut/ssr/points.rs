@@ -52,9 +52,9 @@ named! {
     }
 }
 
-/// Input that reads the voltage at the socket apart from all instruments.
+/// Input that reads the voltage at the socket without any instrument.
 const RESIDUAL: &str = "residual_voltage";
-/// Signal of all inputs of the fixture, a bit each.
+/// Name of the word that holds all inputs of the fixture, a bit each.
 pub const FIXTURE_SIGNAL: &str = "fixture";
 
 /// Every point of this kind that `rig.toml` may have.

@@ -13,7 +13,7 @@ pub const DIVIDED_CHANNEL: f64 = 2.0;
 pub const SHUNT_CHANNEL: f64 = 4.0;
 /// Channel of the digitizer at the output, clamped to +-10 V.
 pub const OUTPUT_CHANNEL: f64 = 3.0;
-/// Instant, s, up to which the drop is read.
+/// Time after the begin of the current up to which the drop is read, s.
 const DRIFT_S: f64 = 0.2;
 /// Vertical divisions from the middle of the screen to its edge, with room.
 const HALF_SCREEN: f64 = 3.5;
@@ -121,7 +121,8 @@ impl Points {
         self.query(Device::SmuOut, "drops_over_time", &arguments)
     }
 
-    /// Prepares one control pulse. `input_a` is the current of the input, A, whose drop in the source is made up for.
+    /// Prepares one control pulse. `input_a` is the current of the control input, A; the program raises the level by
+    /// the drop of this current in the source.
     pub fn train(&self, plan: &Plan, input_a: f64) -> Query {
         let width_s = plan.pulse_s();
         let arguments = [

@@ -96,13 +96,13 @@ fn least_a() -> f64 {
     0.04
 }
 
-/// What is measured of the turn-on and turn-off voltages.
+/// Method for the turn-on and turn-off voltages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Whether the output obeys at both limits.
+    /// Tests whether the output switches at both limits.
     Conformity,
-    /// The same, then both voltages by a search.
+    /// Tests the limits like `Conformity`, then searches both voltages.
     Bisect,
 }
 
@@ -113,14 +113,15 @@ fn phases() -> u32 {
 /// How the part is measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestPlan {
-    /// What is measured of the turn-on and turn-off voltages.
+    /// Method for the turn-on and turn-off voltages.
     pub method: Method,
     /// Width of the interval at which a search ends, mV.
     pub resolution_mv: f64,
     /// AC parts: number of pulses in the train, each at another phase of the mains.
     #[serde(default = "phases")]
     pub phases: u32,
-    /// AC parts: number of parts of a lot of which the sampled characteristics are measured; of all without it.
+    /// AC parts: number of parts of a lot of which the test measures the sampled characteristics; of all parts when
+    /// absent.
     #[serde(default)]
     pub sampling: Option<u32>,
     /// Longest time constant of the output, ms.

@@ -1,10 +1,10 @@
-//! Corrections of the channels of the digitizer, from the references of the fixture. The first part of a lot measures
-//! them; they are measured again with the first part after [`VALID`].
+//! Corrections of the channels of the digitizer, from the references of the fixture. The test of the first part of a
+//! lot measures them first; the first part after [`VALID`] repeats this.
 
 use super::wave::split::Admittance;
 use units::{RigTime, Span};
 
-/// Time for which the corrections are valid.
+/// Time for which the corrections are valid: an hour.
 pub const VALID: Span = Span(3_600_000_000);
 
 /// Errors of the channels, as the references show them.
@@ -26,30 +26,31 @@ pub struct References {
     pub at: RigTime,
 }
 
-/// Currents of the open fixture at the rated voltage of a DC part, A: offset of the meter and insulation.
+/// Currents through the fixture without a part at the rated voltage of a DC part, A: offset of the meter and
+/// insulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OpenFixture {
-    /// With the sources as they are.
+    /// With the polarity of the test.
     pub forward_a: f64,
     /// With reversed voltage.
     pub reversed_a: f64,
-    /// When they were measured.
+    /// Instant of the measurement.
     pub at: RigTime,
 }
 
 impl OpenFixture {
-    /// Returns true while they hold.
+    /// Returns true while the currents are valid.
     pub fn holds(&self, now: RigTime) -> bool {
         now < self.at + VALID
     }
 }
 
-/// What a lot has shown about its fixture.
+/// Corrections that the test of a lot has measured at its fixture.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fixture {
-    /// References of the mains.
+    /// Corrections for AC parts.
     pub references: Option<References>,
-    /// The open fixture.
+    /// Currents of the open fixture, for DC parts.
     pub open: Option<OpenFixture>,
 }
 
@@ -64,7 +65,8 @@ impl References {
         self.ratio.size() * self.divided_gain
     }
 
-    /// Returns the admittance of the part from a reading: corrected, and without that of the fixture.
+    /// Returns the admittance of the part from a reading: corrects the ratio and subtracts the admittance of the
+    /// fixture.
     pub fn corrected(&self, read: Admittance) -> Admittance {
         read.over(self.ratio).less(self.stray)
     }

@@ -12,7 +12,7 @@ pub enum Direction {
     Falling,
 }
 
-/// Where earlier parts let a threshold be expected.
+/// Threshold expected from earlier parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expected {
     /// Expected voltage, V.
@@ -28,10 +28,10 @@ pub struct Search {
     pub low_v: f64,
     /// Upper end, V.
     pub high_v: f64,
-    /// Voltages tried.
+    /// Number of voltages tried.
     pub tried: u32,
     expected: Option<Expected>,
-    /// Whether the output has conducted at the last voltage.
+    /// True when the output conducted at the last voltage; `None` before the first one.
     conducted: Option<bool>,
     /// True once the lower and the upper end are voltages that this search has tried.
     tried_ends: [bool; 2],

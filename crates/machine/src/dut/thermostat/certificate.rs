@@ -14,12 +14,12 @@ use chamber::budget::{Calibrations, map_k};
 use serde::{Deserialize, Serialize};
 use units::Unit;
 
-/// Stands for the voltage of the parts in a calibration that holds for every part.
+/// Nominal voltage, V, that marks a calibration as valid for parts of every voltage.
 pub const EVERY_PART_V: f64 = 0.0;
-/// Least number of temperatures at which the chain is compared.
+/// Least number of temperatures at which a laboratory compares the chain.
 const LEAST_POINTS: usize = 3;
 
-/// A temperature at which the chain was compared.
+/// A temperature at which a laboratory compared the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ChainPoint {
     /// Reading of the rig, C.
@@ -40,15 +40,15 @@ pub struct Chain {
 /// Temperatures of the sockets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SocketMap {
-    /// Air less room at which the map was made, K; the offsets grow in proportion.
+    /// Temperature of the air above that of the room when the map was made, K; the offsets grow in proportion.
     pub excess_k: f64,
-    /// Socket less air, K, in the order of the numbers of the sockets.
+    /// Temperature of each socket above that of the air, K, in the order of their numbers.
     pub offset_k: Vec<f64>,
     /// Standard uncertainty of an offset, K.
     pub u_k: f64,
 }
 
-/// What a laboratory states.
+/// Statements of a laboratory on thermometer chain and rack.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
     /// Date of issue, such as `2026-01-15`; empty only in a calibration that an older version stored.

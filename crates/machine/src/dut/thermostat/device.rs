@@ -24,7 +24,7 @@ pub const WHOLE_V: f64 = 10.0;
 /// Lag and delay of a thermometer in moving air, s. A lot's lag counts from the reading of the thermometer.
 pub const SENSOR_LAG_S: f64 = 8.0;
 
-/// What a batch has revealed about chamber and lot.
+/// Facts about chamber and lot that a batch has revealed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lesson {
     /// Number of the batch in its run, from 1.
@@ -48,15 +48,15 @@ pub struct Device {
     pub recipe: Arc<Recipe>,
     /// Sections of the recipe that only this kind has.
     pub thermostat: Arc<ThermostatRecipe>,
-    /// Points.
+    /// Points of the chamber as this rig has wired them.
     pub points: Arc<Points>,
     /// Accuracies of the modules.
     pub accuracy: AccuracySettings,
-    /// Lesson of the last complete batch; `None` before it.
+    /// Lesson of the last complete batch; `None` before the first one.
     pub lesson: Option<Arc<Lesson>>,
     /// Certificate of thermometer chain and sockets; `None` on a rig without calibration.
     pub certificate: Option<Arc<Certificate>>,
-    /// Instant at which the certificate runs out, microseconds since 1970 UTC; `None` without one.
+    /// Instant at which the certificate expires, microseconds since 1970 UTC; `None` without a certificate.
     pub due_at_us: Option<i64>,
     /// Response of the chamber that the plant states; `None` when the first batch identifies it.
     pub stated: Option<StatedResponse>,

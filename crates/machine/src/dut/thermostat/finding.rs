@@ -5,7 +5,7 @@ use crate::dut::batch::{BatchTrouble, HeatTrouble};
 use crate::dut::finding::Entry;
 use chamber::watch::Trouble;
 
-/// A finding.
+/// Why a part fails, why it could not be judged, or which trouble of the chamber ended the batch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
     /// The contact is open before the batch is heated.

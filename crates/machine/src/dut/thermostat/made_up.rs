@@ -5,14 +5,15 @@ use crate::dut::made_up::{MadeUp, Scatter};
 use crate::dut::recipe::Limits;
 use crate::gauge::Budget;
 
-/// Mean of a characteristic with one limit, as a share of that limit.
+/// Mean of a characteristic with an upper limit alone, as a share of it; with a lower limit alone, the limit as a share
+/// of the mean.
 const BELOW: f64 = 0.6;
-/// Standard deviation of that characteristic, as a share of that limit.
+/// Standard deviation of a characteristic with one limit or none, as a share of the limit or of [`USUAL`].
 const SPREAD: f64 = 0.05;
 /// Mean of a characteristic without any limit, in its unit.
 const USUAL: f64 = 1.0;
 
-/// Returns mean and spread of every characteristic: between its limits, or well inside the only one.
+/// Returns mean and spread of every characteristic: midway between its limits, or well inside the only one.
 pub fn made_up(limits: &Limits) -> MadeUp {
     let one = |of: Parameter| {
         let limit = limits.of(of);

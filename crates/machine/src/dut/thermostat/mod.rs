@@ -11,12 +11,12 @@
 //! | what the rig must have for it | [`feasible`] |
 //! | how long a batch takes | [`duration`] |
 //! | which points of the rig it needs | [`points`] |
-//! | what a test finds in addition to figures | [`finding`] |
+//! | why a part fails or stays unjudged, besides its figures | [`finding`] |
 //! | the keys of its recipe and of the certificate | [`keys`] |
 //! | calibration of thermometer chain and sockets | [`certificate`] |
 //! | date of that calibration | [`issued`] |
 //! | response of the chamber, as a file states it | [`response`] |
-//! | what outlives a batch | [`device`] |
+//! | what a batch learns for the next one: chamber, lag of the lot | [`device`] |
 //! | the test of a batch | [`measure`] |
 //! | the process card | [`card`] |
 

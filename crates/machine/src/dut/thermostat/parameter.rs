@@ -27,9 +27,9 @@ pub enum Parameter {
     Contact,
     /// Width over which the contact opens: from the doubling of its resistance to its opening; 0 for a snap.
     Creep,
-    /// Most edges of the contact in one switching beside its own; 0 for a clean snap.
+    /// Greatest number of edges of the contact in one switching beyond the one it needs; 0 for a clean snap.
     Chatter,
-    /// Widest range of one switching temperature over the passes.
+    /// Range of a switching temperature over the passes; the wider one of operate and reset.
     Repeatability,
 }
 

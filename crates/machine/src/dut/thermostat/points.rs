@@ -73,7 +73,7 @@ pub struct Points {
     pub select: [DigitalOutput; 6],
     /// Switches the test current through the contact of the selected socket.
     pub current: DigitalOutput,
-    /// Voltage across that contact.
+    /// Voltage across the contact of the selected socket.
     pub drop: AnalogInput,
     /// Volts at the terminal per volt across the contact.
     pub drop_gain: f64,

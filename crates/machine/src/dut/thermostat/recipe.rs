@@ -17,7 +17,7 @@ use chamber::program::Window;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Rate of a slow repeat below which a repeat takes too long, K/min; a recipe may be slower.
+/// Least rate of a slow repeat, K/min, unless the passes of the recipe are slower.
 const LEAST_REPEAT: f64 = 0.5;
 
 /// The sections `[part]` and `[test]`.
@@ -56,7 +56,7 @@ pub struct TestPlan {
     pub learning_k_per_min: f64,
     /// Rate of the other passes, K/min.
     pub rate_k_per_min: f64,
-    /// Number of passes at that rate in each batch.
+    /// Number of passes at `rate_k_per_min` in each batch.
     pub passes: usize,
     /// Number of batches from one that measures the lag to the next.
     pub learning_every: usize,
@@ -87,7 +87,7 @@ impl ThermostatRecipe {
         Some([operate, window(limits.of(Parameter::Reset))?])
     }
 
-    /// Returns which passes the batches get.
+    /// Returns the strategy that chooses the passes of each batch.
     pub fn strategy(&self) -> Strategy {
         let known = vec![self.test.rate_k_per_min; self.test.passes];
         let fast = (self.test.learning_k_per_min != self.test.rate_k_per_min)

@@ -5,7 +5,7 @@ use chamber::tune::relay::Oscillation;
 use chamber::tune::{FirstOrder, Identified, Settings};
 use serde::{Deserialize, Serialize};
 
-/// Tables of `rack.toml`.
+/// Names of tables of `rack.toml`.
 const RESPONSE: &str = "chamber";
 const FIRST_ORDER: &str = "chamber.first_order";
 const PID: &str = "chamber.pid";

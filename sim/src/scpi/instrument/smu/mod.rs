@@ -80,7 +80,7 @@ const TABLE: &[Setting] = &[
     Setting("measurement_events", ":STATus:MEASurement:ENABle", Ignored, 1),
 ];
 
-/// A measurement in progress: its remaining points; a point without a level leaves the source as it is.
+/// A measurement in progress: the source levels of its remaining points, `None` where the source stays as it is.
 struct Job {
     levels: VecDeque<Option<f64>>,
     delay_us: u64,
@@ -113,7 +113,7 @@ impl Smu {
         }
     }
 
-    /// Returns the value of the one of three settings that belongs to the present sense function.
+    /// Returns the value of a setting that each sense function has on its own, for the present function.
     fn sense(&self, amps: &'static str, volts: &'static str, ohms: &'static str) -> f64 {
         let settings = &self.body.settings;
         settings.number(match settings.choice("sense") {

@@ -134,8 +134,8 @@ impl Model {
     }
 
     /// Returns the quasi-static release: the fold at which the armature leaves the seat. Where the load falls faster
-    /// than the pull, the armature follows the voltage for a while and the fold lies before the seat: then the release
-    /// is the greatest travel at which the equilibrium reverses.
+    /// with the travel than the pull, the armature first follows the voltage and the fold lies before the seat: the
+    /// release is then the fold at the greatest travel.
     pub fn release(&self) -> Balance {
         let deepest = self.stop.depth(1e3);
         let depth = root(deepest, |depth| -self.steepness(&self.load_on_seat(depth)));

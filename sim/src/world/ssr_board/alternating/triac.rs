@@ -3,7 +3,7 @@
 use super::segment::{OnState, Segment, State};
 
 /// Interval of the search for firing, microseconds: shorter than the time for which the line stays in the narrowest
-/// firing window. The next constant is the interval of the search for a current zero.
+/// firing window. [`ZERO_US`] is the interval of the search for a current zero.
 const FIRING_US: f64 = 10.0;
 const ZERO_US: f64 = 100.0;
 /// Accuracy of an instant, microseconds.
@@ -14,8 +14,7 @@ const COMMUTATION_V: f64 = 50.0;
 /// Voltages at which an output fires, in the positive and in the negative direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gate {
-    /// Least and greatest voltage over the output at which it fires, volts; `None` in a direction in which it never
-    /// does.
+    /// By direction: least and greatest voltage over the output at which it fires, volts; `None` where it never fires.
     pub window: [Option<(f64, f64)>; 2],
 }
 
@@ -23,7 +22,7 @@ impl Gate {
     /// A gate that never fires.
     pub const SHUT: Self = Self { window: [None; 2] };
 
-    /// Returns the direction in which the output fires at a voltage.
+    /// Returns the direction in which the output fires at a voltage, 1 or -1; `None` when it does not fire.
     pub fn fires(&self, volts: f64) -> Option<f64> {
         let (sign, window) = match volts < 0.0 {
             false => (1.0, self.window[0]),
@@ -58,8 +57,8 @@ pub fn extinction_us(
 }
 
 /// Checks whether the voltage that returns at a current zero rises too fast for the output to block. An inductive load
-/// makes it swing up with the capacitance over the output; over a resistive load it returns as slowly as the line. At
-/// most [`COMMUTATION_V`] never rises too fast.
+/// makes it swing up with the capacitance over the output; over a resistive load it returns as slowly as the line. A
+/// voltage up to [`COMMUTATION_V`] never rises too fast.
 pub fn fails_to_commutate(line_v: f64, henries: f64, farads: f64, limit_v_per_us: f64) -> bool {
     let swing_us = 1e6 * (henries * farads).sqrt();
     line_v.abs() > COMMUTATION_V && line_v.abs() > limit_v_per_us * swing_us

@@ -48,8 +48,8 @@ impl Pace {
         self.times(4.2)
     }
 
-    /// Returns the dwell at a level that may lie above the threshold. The motion of the armature grows tenfold per 1.2
-    /// operate times, so that the dwell resolves less than 1 mV.
+    /// Returns the dwell at a level that may lie above the threshold. The deflection of the armature grows tenfold
+    /// every 1.2 operate times, so that the dwell shows a threshold that the level exceeds by less than 1 mV.
     pub fn dwells(self) -> Span {
         self.times(6.3)
     }

@@ -22,7 +22,8 @@ pub enum Stage {
     Search(Direction),
     /// Coarse ramp from the pre-bias.
     OperateCoarse,
-    /// Fine ramp from just below the coarse estimate; a later attempt searches a wider interval.
+    /// Fine ramp from just below the coarse estimate, with the number of the attempt, from 0; later ones search a wider
+    /// interval.
     OperateFine(u8),
     /// Steps the coil to nominal voltage. Counter gate 0 measures the operate time, gate 1 the bounce. Then the stage
     /// measures the resistance of the closed NO contact.
@@ -32,7 +33,7 @@ pub enum Stage {
     TimedRelease,
     /// Coarse falling ramp from a sealed armature.
     ReleaseCoarse,
-    /// Fine falling ramp; a later attempt searches a wider interval.
+    /// Fine falling ramp, with the number of the attempt, from 0; later ones search a wider interval.
     ReleaseFine(u8),
     /// Outputs off, coil current decayed.
     Off,

@@ -2,10 +2,10 @@
 //! a step to the turn-on voltage it conducts within its turn-on time.
 //!
 //! The digitizer records the output from the step on. Blocking also means that the load current is at most the leakage.
-//! The applied voltage keeps a guard band from the limit, on the side that is harder for the part. A part that fails
-//! there is tried once more a guard band beyond the limit: if it obeys there, the limit is neither proven kept nor
-//! proven exceeded. If it obeys there, but too late, the pulse at the nominal voltage shows whether its time is wrong or
-//! its voltage.
+//! The applied voltage keeps a guard band from the limit, on the side that is harder for the part. When a part fails
+//! there, the test tries once more a guard band beyond the limit: if the part obeys there, the limit is neither proven
+//! kept nor proven exceeded. If it obeys there, but too late, the pulse at the nominal voltage shows whether its time
+//! is wrong or its voltage.
 
 use super::board::{self, Position};
 use super::dc_stage::DcStage;
@@ -26,9 +26,10 @@ use units::Span;
 const ON: f64 = 0.9;
 /// Share of the load up to which it counts as off.
 const OFF: f64 = 0.1;
-/// Part of the time limit, behind it, whose samples show whether the output has answered in time.
+/// Length of the stretch after the time limit whose samples show whether the output has answered in time, as a share of
+/// the limit.
 const AT: f64 = 0.05;
-/// Time after which an output that has not answered yet never does, in time limits.
+/// Number of time limits after which an output that has not answered counts as one that never does.
 const LATE: f64 = 20.0;
 /// Time beyond the length of a record until the digitizer has stored it.
 const STORED: Span = Span::ms(2);
@@ -98,8 +99,8 @@ fn read(points: &Points, after_s: f64) -> [Act; 2] {
     ]
 }
 
-/// Returns the acts that set the control to a level, for which the digitizer waits, and read the record of the answer;
-/// the load current is read at the same time.
+/// Returns the acts that set the control to a level, on which the digitizer triggers, and read the record of the answer
+/// together with the load current.
 fn answer(points: &Points, level_v: f64, within_s: f64) -> [Act; 3] {
     [
         Act::Query(vec![points.level(Device::SmuIn, level_v)]),
@@ -156,7 +157,8 @@ pub fn conclude_blocks(
     Ok(Next::Planned)
 }
 
-/// Returns the acts of the turn-off a guard band beyond the limit, once more long after the step, then without control.
+/// Returns the acts of the second try of the turn-off: a step to a guard band below the limit, a reading of the load
+/// current 20 time limits later, and one without control voltage.
 pub fn block_beyond_acts(plan: &Plan, points: &Points) -> Vec<Act> {
     let level_v = plan
         .turn_off_v
@@ -218,7 +220,8 @@ pub fn conclude_conducts(
     Ok(Next::Planned)
 }
 
-/// Returns the acts of the turn-on a guard band beyond the limit, and a look long after the step.
+/// Returns the acts of the second try of the turn-on: a step to a guard band above the limit, and a reading of the load
+/// current once more, 20 time limits later.
 pub fn conduct_beyond_acts(plan: &Plan, points: &Points) -> Vec<Act> {
     let mut acts = conduct_acts(plan, points, plan.guard_v);
     acts.extend(read(points, LATE * plan.on_s));

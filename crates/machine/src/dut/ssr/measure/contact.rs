@@ -28,7 +28,8 @@ fn look(points: &Points, on: &[DigitalOut]) -> [Act; 3] {
     ]
 }
 
-/// Returns the acts of the Kelvin test. The sources go off first, in case the test before could not prove it.
+/// Returns the acts of the Kelvin test. They switch the sources off first, because the test before may have ended
+/// without proof that they are off.
 pub fn acts(state: &mut State, points: &Points) -> Vec<Act> {
     let mut acts = discharge::off_acts(state, points);
     acts.extend(look(points, &[DigitalOut::KelvinTest]));

@@ -17,9 +17,10 @@ const SAFE: [DigitalIn; 3] = [
     DigitalIn::LineOpen,
     DigitalIn::LoopOpen,
 ];
-/// Longest time until these inputs show a safe socket.
+/// Longest time until the inputs [`SAFE`] show a safe socket.
 const WITHIN: Span = Span::ms(500);
-/// Times that the socket is looked at before it counts as live: the first conversion may be older than the discharge.
+/// Number of readings after which a socket that is not safe counts as live: the first one may be older than the
+/// discharge.
 const LOOKS: u32 = 3;
 /// Time of two conversions of the slowest converter, which has all its channels enabled.
 const CONVERSIONS: Span = Span::ms(220);
@@ -30,7 +31,8 @@ const FRESH: Span = Span::ms(30);
 /// Voltage at the socket below which the jaws may open, V.
 pub const SAFE_V: f64 = 30.0;
 
-/// Returns the acts that take the sources off. The fixture keeps the pulse source away but for its stage.
+/// Returns the acts that switch off both SMUs, and the pulse source if this test has switched it on: the fixture
+/// connects that source only for its stage.
 pub fn off_acts(state: &mut State, points: &Points) -> Vec<Act> {
     let mut queries = [Device::SmuIn, Device::SmuOut]
         .map(|it| points.off(it))
@@ -39,8 +41,8 @@ pub fn off_acts(state: &mut State, points: &Points) -> Vec<Act> {
     vec![Act::Query(queries)]
 }
 
-/// Returns the acts that disconnect the socket, discharge it and look at its voltage in two ways; from the second look on
-/// after a fresh conversion.
+/// Returns the acts that disconnect the socket, discharge it and check its voltage by detector and converter; from the
+/// second check on after two full conversions.
 pub fn acts(state: &mut State, points: &Points) -> Vec<Act> {
     state.position = Position::Isolated;
     let is_first = state.looks == 0;

@@ -1,4 +1,4 @@
-//! What a stage has read, with the points of the rig.
+//! Readings of a stage, by instrument and point, for its conclusion.
 
 use crate::dut::Reason;
 use crate::dut::ssr::Finding;
@@ -55,7 +55,7 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// Returns the last of two readings one after the other, and how far it is from the first.
+    /// Returns the second of two readings, and its difference from the first.
     ///
     /// # Errors
     /// Fails unless the program has delivered two numbers.

@@ -17,7 +17,7 @@ use units::Unit;
 const OPEN_A: f64 = 10e-6;
 /// Least current of an LED at the pins of the output, A.
 const LED_A: f64 = 100e-6;
-/// Largest share of that current which flows through an LED in the other direction.
+/// Largest reverse current of an LED, as a share of its forward current.
 const ONE_WAY: f64 = 0.1;
 
 /// Returns the acts that measure the input while the output is at nothing.

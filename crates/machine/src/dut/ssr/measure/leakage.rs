@@ -86,7 +86,7 @@ pub fn open_acts(state: &mut State, dc: &DcPlan, points: &Points) -> Vec<Act> {
     acts
 }
 
-/// Concludes the open fixture. It may not take more than a tenth of the current at which a part counts as blocked.
+/// Concludes the open fixture, whose current may be at most a tenth of that at which a part counts as blocked.
 pub fn conclude_open(
     state: &mut State,
     dc: &DcPlan,

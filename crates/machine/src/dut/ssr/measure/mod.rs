@@ -173,13 +173,13 @@ impl Test {
 }
 
 impl Test {
-    /// Returns what is proven about the limit of a threshold.
+    /// Returns the proven judgement of the limit of a threshold; `None` without a proof.
     fn proof(&self, of: Parameter) -> Option<Judgement> {
         self.state.proof(of).or_else(|| self.proof_of_late(of))
     }
 
-    /// Returns the failure of an output that obeys at the limit of its threshold, but too late; `None` while its time at
-    /// the nominal voltage is not proven right, because then its time is to blame.
+    /// Returns the failure of a threshold at whose limit the output switches, but too late. Returns `None` unless its
+    /// time at the nominal voltage is proven right: otherwise the time fails, not the threshold.
     fn proof_of_late(&self, of: Parameter) -> Option<Judgement> {
         let (time, side) = match of {
             Parameter::TurnOffVoltage => (Parameter::TurnOffTime, Side::Low),
@@ -191,8 +191,8 @@ impl Test {
         (is_late && is_right).then_some(Judgement::Fail(side))
     }
 
-    /// Returns for each threshold whether the part obeys at its limit. Absent is a threshold within the guard band, and
-    /// one that the test has not reached.
+    /// Returns, for each threshold, true when the part switches at its limit; leaves out a threshold within the guard
+    /// band, and one that the test has not reached.
     fn conforms(&self) -> Vec<(&'static str, bool)> {
         let found = self.why_stopped().and_then(Stop::proven);
         let obeys = |of: Parameter| match self.proof(of) {

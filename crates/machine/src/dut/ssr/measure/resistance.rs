@@ -12,7 +12,8 @@ use crate::dut::ssr::program::drop_count;
 use crate::instrument::act::Act;
 use units::{Span, Unit};
 
-/// Share of the voltage limit from which the current is below the commanded one.
+/// Share of the voltage limit from which a drop shows that the source limits its voltage and keeps less than the
+/// commanded current.
 const LIMITED: f64 = 0.98;
 
 /// Returns the acts: the input at its nominal voltage, the full current over time from the cold part on, then half of it.

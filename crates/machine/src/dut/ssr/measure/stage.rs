@@ -149,8 +149,8 @@ impl Stage {
     }
 }
 
-/// Returns the stages of a good part, without those that end the test, the safe ones first. The line is connected only
-/// after the output is known to block 5 V and the input to be sound.
+/// Returns the stages of a good part, without those that end the test, the safe ones first. The stages on the line come
+/// only after those that show an output that blocks 5 V and a sound input.
 pub fn order(plan: &Plan, is_referenced: bool) -> Vec<Stage> {
     let own = match &plan.output {
         OutputPlan::Dc(_) => dc_stage::order(plan, is_referenced),

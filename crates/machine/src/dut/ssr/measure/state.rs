@@ -46,40 +46,40 @@ pub struct State {
     pub search: Option<Search>,
     /// Upper end of the interval that holds the turn-on voltage, V.
     pub turn_on_v: Option<f64>,
-    /// What the conformity tests have proven about limits.
+    /// Judgements of limits that the conformity tests have proven.
     pub proven: Vec<(Parameter, Judgement)>,
-    /// Voltages at whose limits the output obeys, but not within its time.
+    /// Thresholds at whose limits the output switches, but later than its time limit.
     pub late: Vec<Parameter>,
-    /// True for a part whose sampled characteristics are left out.
+    /// True for a part of which the test leaves out the sampled characteristics.
     pub is_no_sample: bool,
-    /// What the pulse source does.
+    /// State of the pulse source in this test.
     pub pulses: Pulses,
-    /// What the open fixture has shown.
+    /// Currents of the open fixture; `None` until they are measured.
     pub open: Option<OpenFixture>,
-    /// Number of looks at the socket at the end of the test.
+    /// Number of checks of the socket so far at the end of the test.
     pub looks: u32,
     /// True once the socket is proven to be discharged and below 30 V.
     pub is_discharged: bool,
 }
 
-/// What the pulse source does.
+/// State of the pulse source in a test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pulses {
-    /// Its output is off: no program of this test has switched it on.
+    /// The output of the pulse source is off: no program of this test has switched it on.
     #[default]
     Off,
-    /// It holds the pulses of this test, and waits for its trigger.
+    /// The source holds the pulses of this test, and waits for its trigger.
     Ready,
-    /// It has been triggered.
+    /// The trigger has started the pulses.
     Sent,
 }
 
-/// What a stage demands after its conclusion.
+/// Stage that follows a concluded stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Next {
     /// The next planned stage.
     Planned,
-    /// This stage first.
+    /// This stage, before the next planned one.
     Insert(Stage),
 }
 
@@ -109,8 +109,8 @@ fn ac_of(plan: &Plan) -> &AcPlan {
 }
 
 impl State {
-    /// Returns the query that prepares the pulses at the control input; none when they are prepared already. The pulse
-    /// source begins only at its trigger.
+    /// Returns the query that prepares the pulses at the control input; `None` when the source already holds them. The
+    /// pulse source begins only at its trigger.
     pub fn prepare_pulses(&mut self, plan: &Plan, points: &Points) -> Option<Query> {
         if std::mem::replace(&mut self.pulses, Pulses::Ready) == Pulses::Ready {
             return None;
@@ -177,7 +177,7 @@ impl State {
         }
     }
 
-    /// Concludes from the readings of a stage.
+    /// Draws the conclusions of a stage from its readings; returns the stage that follows.
     pub fn conclude(
         &mut self,
         stage: Stage,
@@ -277,7 +277,7 @@ impl State {
         !(self.is_no_sample && of.is_sampled())
     }
 
-    /// Returns what the fixture has shown.
+    /// Returns the corrections that the fixture has shown.
     pub fn fixture(&self) -> Fixture {
         Fixture {
             references: self.references,
@@ -285,7 +285,7 @@ impl State {
         }
     }
 
-    /// Returns what is proven about a limit.
+    /// Returns the proven judgement of a limit; `None` without a proof.
     pub fn proof(&self, of: Parameter) -> Option<Judgement> {
         let mut all = self.proven.iter();
         all.find_map(|(known, judgement)| (*known == of).then_some(*judgement))

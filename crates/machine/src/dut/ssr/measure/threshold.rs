@@ -66,7 +66,8 @@ pub fn line_acts(
     }
 }
 
-/// Returns the time that a search gives an AC part to conduct, s: near its threshold it is later than its limit allows.
+/// Returns the time that a search gives an AC part to conduct, s: longer than the limit, because a part near its
+/// threshold is late.
 fn on_s(plan: &Plan) -> f64 {
     plan.on_s + plan.dwell().as_seconds()
 }

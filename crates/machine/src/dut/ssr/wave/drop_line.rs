@@ -1,4 +1,4 @@
-//! Straight line of the drop of a conducting output against its current, one for each polarity: `v = v0 + r |i|`.
+//! Fits a straight line to the drop of a conducting output over its current, one for each polarity: `v = v0 + r |i|`.
 
 use super::least_squares::Sums;
 
@@ -19,7 +19,8 @@ impl DropLine {
         self.threshold_v + self.ohm * ampere
     }
 
-    /// Returns the rms of the drop for a sinusoidal current with this amplitude, V (ssr.md, section 2).
+    /// Returns the rms of the drop for a sinusoidal current with this amplitude, V: the integral of `(v0 + r |i|)^2` in
+    /// closed form.
     pub fn rms(&self, peak_a: f64) -> f64 {
         let (v0, r) = (self.threshold_v, self.ohm);
         let mixed = 2.0 * v0 * r * peak_a * 2.0 / std::f64::consts::PI;

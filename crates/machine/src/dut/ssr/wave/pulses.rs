@@ -46,7 +46,7 @@ pub struct Pulse {
     pub end_s: f64,
 }
 
-/// What an output did after one pulse.
+/// Answer of an output to one pulse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
     /// The pulse.
@@ -67,8 +67,8 @@ pub struct Answer {
 
 impl Answer {
     /// Returns the time from the first zero of the mains after the rising edge to the turn-on, s; none for an edge too
-    /// close to a zero. Where it is near, it is the time that the nominal mains, which rises by `slope` V/s at its zero,
-    /// takes for the voltage before the turn-on: the mains varies from cycle to cycle, and its harmonics bend the zero.
+    /// close to a zero. Near that zero, it is the time in which the nominal mains, with `slope` V/s at its zero,
+    /// reaches the voltage before the turn-on: the mains varies from cycle to cycle, and its harmonics bend the zero.
     pub fn after_zero_s(&self, mains: &Mains, slope: f64) -> Option<f64> {
         let on = self.on?;
         let took_s = on.at_s - self.zero_s;
@@ -78,8 +78,8 @@ impl Answer {
         is_clear(mains, self.pulse.rise_s).then_some(took_s)
     }
 
-    /// Returns the time from the first zero of the current after the falling edge to the zero at which the output
-    /// turned off, s: a whole number of half periods. `None` for an edge too close to a zero.
+    /// Returns the time from the first zero of the mains after the falling edge to the zero at which the output turned
+    /// off, s: a whole number of half periods. `None` for an edge too close to a zero.
     pub fn off_after_zero_s(&self, mains: &Mains) -> Option<f64> {
         let halves = ((self.off_s? - self.off_zero_s) / mains.half_s()).round();
         is_clear(mains, self.pulse.fall_s).then_some(halves * mains.half_s())

@@ -34,7 +34,7 @@ impl Admittance {
         }
     }
 
-    /// Returns this admittance without another one in parallel.
+    /// Returns what remains of this admittance without `other`, which lies in parallel.
     pub fn less(self, other: Self) -> Self {
         Self {
             conductance: self.conductance - other.conductance,
@@ -50,7 +50,7 @@ impl Admittance {
         }
     }
 
-    /// Returns the magnitude.
+    /// Returns the magnitude, S.
     pub fn size(self) -> f64 {
         self.conductance.hypot(self.susceptance)
     }

@@ -1,9 +1,9 @@
 //! Finds the instants at which the voltage of an output jumps from the curve of the mains to the drop.
 //!
-//! Before the jump the output follows the mains, whose curve is known from the whole record but for a shift from cycle to
-//! cycle; behind it the output stays at its drop. Every split of one and the same window is tried, and the one that
-//! leaves the least sum of squares is the jump. The window and its parts are times, so that the result depends neither
-//! on the rate of the samples nor on which of two channels shows them.
+//! Before the jump the output follows the mains, whose curve is known from the whole record but for a shift from cycle
+//! to cycle; behind it the output stays at its drop. The search tries every split of one and the same window; the split
+//! with the least sum of squares is the jump. The window and its parts are times, so that the result depends neither on
+//! the rate of the samples nor on which of two channels shows them.
 
 use super::Channel;
 use super::mains::Mains;
@@ -11,7 +11,7 @@ use super::mains::Mains;
 /// Time before a jump whose samples show the shift of the mains, and time behind it whose samples show the drop, s.
 const BEFORE_S: f64 = 120e-6;
 const BEHIND_S: f64 = 50e-6;
-/// Least number of samples of either.
+/// Least number of samples before a jump, and (the next constant) behind it.
 const FEWEST_BEFORE: usize = 12;
 const FEWEST_BEHIND: usize = 2;
 

@@ -1,14 +1,15 @@
-//! Course of a value while a current warms the part, from the cold part on. The values are means over equal times in a row;
-//! they approach their end exponentially, with the time constant of the junction.
+//! Fits an exponential to a value that changes while a current warms the part, from the cold part on. Each given value
+//! is a mean; the means cover equal times without gaps. The time constant is that of the junction.
 
-/// Ratios of the distances from the end, from one value to the next, that are tried.
+/// Range and count of the ratios that the fit tries: each divides the distance of a mean from the final value by that
+/// of the mean before.
 const LEAST: f64 = 0.02;
 const MOST: f64 = 0.9;
 const TRIED: u32 = 45;
-/// Fewest values.
+/// Fewest values of a fit.
 const FEWEST: usize = 5;
 
-/// Returns the course of the values; none for fewer than five values.
+/// Returns the best course through the values; none for fewer than five values.
 pub fn course(values: &[f64]) -> Option<Course> {
     if values.len() < FEWEST {
         return None;
@@ -19,25 +20,25 @@ pub fn course(values: &[f64]) -> Option<Course> {
     best.at(0.0).is_finite().then_some(best)
 }
 
-/// A value that approaches its end.
+/// A value that approaches its final value exponentially.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Course {
     end: f64,
-    /// Distance from the end at the begin of the first time.
+    /// Distance from the final value at the begin of the first time.
     rest: f64,
-    /// Ratio of the distances from the end, from one time to the next.
+    /// Factor by which each time multiplies the distance from the final value.
     ratio: f64,
     squares: f64,
 }
 
 impl Course {
-    /// Returns the value after this many of the equal times.
+    /// Returns the value after a number of the equal times; 0 is the cold part.
     pub fn at(&self, times: f64) -> f64 {
         self.end + self.rest * self.ratio.powf(times)
     }
 }
 
-/// Fits both by least squares, for a distance that each time multiplies by `ratio`.
+/// Fits final value and first distance by least squares, for a distance that each time multiplies by `ratio`.
 fn fitted(values: &[f64], ratio: f64) -> Course {
     let count = values.len() as f64;
     // The mean of the exponential over the first time, as a share of its begin.

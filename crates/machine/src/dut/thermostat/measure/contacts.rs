@@ -5,7 +5,7 @@ use crate::rig::point::DigitalInput;
 use chamber::lag::{Switching, Transition};
 use units::{RigTime, Span};
 
-/// Greatest age of a contact reading that counts.
+/// Greatest age at which a reading of a contact still counts.
 const FRESH: Span = Span::ms(2_000);
 /// Edges at most this far apart belong to one switching, s.
 const GAP_S: f64 = 1.0;
@@ -44,7 +44,7 @@ pub struct Events {
 }
 
 impl Contact {
-    /// Makes the contact of a socket that has not been polled.
+    /// Makes the contact of a socket, not yet polled.
     pub fn new(input: DigitalInput) -> Self {
         Self {
             input,
@@ -147,7 +147,7 @@ fn events(mut closed: bool, edges: &[(f64, bool)]) -> Events {
 }
 
 impl Events {
-    /// Returns true for a contact that moves without switching, at least three times.
+    /// Returns true for a contact with at least three bursts of edges that returned to the state before.
     pub fn is_intermittent(&self) -> bool {
         self.stray >= STRAY
     }

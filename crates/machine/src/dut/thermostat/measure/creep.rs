@@ -1,7 +1,8 @@
 //! Creep: a contact whose resistance rises before it opens.
 //!
-//! In the rise of the last pass, short pulses of current go through closed contacts, one after the other in each second. The
-//! temperature of the part at which its resistance has doubled, and the one at which it opens, are the width of the creep.
+//! In the rise of the last pass, short pulses of current go through closed contacts, one after the other in each
+//! second. The width of the creep goes from the temperature of the part at which its resistance has doubled to that at
+//! which it opens.
 
 use super::drop::Found;
 use crate::gauge::budget::rectangular;
@@ -9,9 +10,9 @@ use crate::gauge::{Budget, Reading};
 use chamber::lag::{Filtered, Switching};
 use units::Unit;
 
-/// Contacts that get a pulse in a second: more would not fit beside the thermometers.
+/// Number of contacts that get a pulse in a second: more would not fit beside the thermometers.
 pub const EACH_SECOND: usize = 3;
-/// Resistance over the cold one from which a contact creeps.
+/// Ratio of the resistance of a contact to that before heating from which the contact creeps.
 const RAISED: f64 = 2.0;
 /// Resistance that readings of a sound contact do not exceed by their noise, mohm.
 const LEAST_MOHM: f64 = 10.0;

@@ -1,6 +1,6 @@
 //! Measures contact resistances before the batch is heated: four-wire, one socket after the other.
 //!
-//! Each contact is read without and with current; the difference is free of offset and thermal EMF.
+//! The test reads each contact without and with current; the difference is free of offset and thermal EMF.
 
 use crate::dut::accuracy::{AccuracySettings, LSB_V};
 use crate::dut::thermostat::points::Points;

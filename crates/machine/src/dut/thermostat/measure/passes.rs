@@ -26,7 +26,7 @@ use chamber::watch::{Second, Watch};
 const STEP: f64 = 0.15;
 /// Rest before the passes, s: afterwards the chamber responds to present power alone.
 const REST_S: u32 = 120;
-/// Temperature for which the set point heads after the last pass, C; the batch ends before it is reached.
+/// Temperature for which the set point heads after the last pass, C; the batch ends before the chamber reaches it.
 const UNLOAD_C: f64 = 40.0;
 /// Time in a window after which the slope over a minute no longer includes the approach, s.
 const SETTLES_S: u32 = 150;
@@ -40,13 +40,13 @@ pub struct Seen {
     pub control_c: Option<f64>,
     /// Reference thermometer, beside the parts; `None` without a valid reading.
     pub reference_c: Option<f64>,
-    /// Temperature of the room.
+    /// Temperature of the room, C.
     pub ambient_c: f64,
     /// Numbers of live sockets that have yet to switch.
     pub waiting: Waiting,
 }
 
-/// What is known about the chamber before the passes.
+/// Identified response of the chamber, and its surroundings.
 #[derive(Debug, Clone, Copy)]
 pub struct Known {
     chamber: Identified,
@@ -54,7 +54,7 @@ pub struct Known {
     ambient_c: f64,
 }
 
-/// What the chamber does at present.
+/// Present work of the chamber.
 #[derive(Debug)]
 pub enum Work {
     /// Identification of the chamber, with a step of the heater.
@@ -65,7 +65,7 @@ pub enum Work {
     Rest(Known, u32),
     /// Passes through the windows.
     Passes(Box<Passes>),
-    /// What follows the identification of an experiment without parts.
+    /// The experiment without parts, after its identification.
     Trial(Box<Trial>),
 }
 
@@ -88,7 +88,8 @@ impl Work {
         }
     }
 
-    /// Performs a second and returns the command for heater and vent; `None` when the batch is over.
+    /// Performs one second and returns the command for heater and vent; `None` when all passes or the experiment are
+    /// over.
     ///
     /// # Errors
     /// Fails with the trouble of the chamber; the caller switches the heater off.
@@ -148,7 +149,7 @@ impl Work {
         }
     }
 
-    /// Returns the set point of this second, C; `None` before the passes.
+    /// Returns the set point of this second, C; `None` outside of the passes.
     pub fn set_c(&self) -> Option<f64> {
         match self {
             Self::Identification(_) | Self::Room(_) | Self::Rest(..) | Self::Trial(_) => None,
@@ -238,13 +239,13 @@ impl Passes {
         }
     }
 
-    /// Returns number and count of the passes, from 1; `None` after the last one.
+    /// Returns the number of the present pass, from 1, and the count of passes; `None` after the last one.
     pub fn progress(&self) -> Option<(usize, usize)> {
         let present = self.program.pass() + 1;
         (present <= self.passes).then_some((present, self.passes))
     }
 
-    /// Returns true in the rise of the last pass.
+    /// Returns true during the rise of the last pass.
     pub fn is_last_rise(&self) -> bool {
         self.program.phase() == Phase::Rise && self.program.pass() + 1 == self.passes
     }

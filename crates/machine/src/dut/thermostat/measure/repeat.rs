@@ -10,12 +10,12 @@ use chamber::lag::{Noise, Record, Value, estimate};
 use chamber::plan::is_near_limit;
 use chamber::program::Pass;
 
-/// A part of the batch with what its contact has shown so far.
+/// A part of the batch with the events of its contact so far.
 #[derive(Debug, Clone)]
 pub struct Shown {
-    /// Number of its socket.
+    /// Number of the socket.
     pub socket: u16,
-    /// Its switchings.
+    /// Switchings and stray bursts of the contact.
     pub events: Events,
 }
 

@@ -26,9 +26,9 @@ pub const SCATTER_K: f64 = 0.15;
 /// Standard uncertainty of a lag that only the recipe states, as a share of it.
 const STATED_LAG: f64 = 0.3;
 
-/// Lag of a part over that of its lot from which the part is slow: beyond five times the spread of a lot.
+/// Ratio of the lag of a part to that of its lot above which the part is slow: beyond five times the spread of a lot.
 const SLOW: f64 = 2.0;
-/// Departure of the lag of a lot from the expected one, as a share, that is reported.
+/// Departure of the lag of a lot from the expected one, as a share of the latter, above which a batch reports it.
 const ODD_LAG: f64 = 0.4;
 
 /// What a batch has recorded.
@@ -82,7 +82,8 @@ pub fn lot(device: &Device, record: &Record, events: &[Events]) -> (LotLag, bool
     (lag, known.is_some(), scatter_k)
 }
 
-/// Returns the trouble of a lag that is far from what was known before the batch.
+/// Returns the trouble of a batch whose measured lag departs by more than [`ODD_LAG`] from the lag of the batch before,
+/// or else from that of the recipe.
 pub fn unexpected_lag(device: &Device, recorded: &Recorded) -> Option<BatchTrouble> {
     let (found, is_told, _) = lot(device, recorded.record, &recorded.events);
     let lesson = device.lesson.as_ref().and_then(|it| it.lag);
@@ -93,7 +94,7 @@ pub fn unexpected_lag(device: &Device, recorded: &Recorded) -> Option<BatchTroub
     is_off.then(|| BatchTrouble::LagUnexpected(whole(found.seconds), whole(expected_s)))
 }
 
-/// Judges every part of a batch, and says what the batch has shown.
+/// Judges every part of a batch; each record keeps the [`Lesson`] of the batch.
 pub fn batch(
     device: &Device,
     order: &BatchOrder,
@@ -179,7 +180,7 @@ fn is_slow(device: &Device, recorded: &Recorded, part: &Switching, lot: &LotLag)
     own.is_some_and(|own| own.seconds + SENSOR_LAG_S > SLOW * (lot.seconds + SENSOR_LAG_S))
 }
 
-/// Returns the results of parts of which nothing can be said.
+/// Returns void results for all parts of a batch that ended before it could judge them.
 pub fn void(device: &Device, order: &BatchOrder, why: Option<Ended>) -> Vec<SocketResult> {
     let one = |socket: &u16| {
         let mut record = TestRecord::default();
@@ -193,7 +194,8 @@ pub fn void(device: &Device, order: &BatchOrder, why: Option<Ended>) -> Vec<Sock
     order.sockets.iter().map(one).collect()
 }
 
-/// Takes the resistance before heating; the mean with that of the closure that the pulses have met, if it is another one.
+/// Stores the contact resistance: that before heating, or its mean with the resistance that pulses have met at another
+/// closure of the contact.
 fn contact(
     record: &mut TestRecord,
     found: Option<&Found>,
@@ -214,7 +216,7 @@ fn contact(
     }
 }
 
-/// Where a part was: what the certificate of the rig says about its temperature.
+/// Socket of a part, with the certificate that corrects temperatures there.
 pub struct Site<'a> {
     certificate: Option<&'a Certificate>,
     /// Place of the socket in the order of the numbers, from 0.
@@ -233,7 +235,7 @@ impl<'a> Site<'a> {
         }
     }
 
-    /// Returns the temperatures of the part, which the estimate states as readings of the reference thermometer.
+    /// Converts an estimate from readings of the reference thermometer to temperatures of the part at its socket.
     pub fn corrected(&self, found: Estimate) -> Estimate {
         let correct = |it: Value| Value {
             value: self.certificate.map_or(it.value, |of_rack| {

@@ -68,7 +68,7 @@ pub struct Seconds {
     pub origin: RigTime,
     /// Readings of the reference thermometer.
     pub record: Record,
-    /// Its last reading.
+    /// Last reading of the reference thermometer.
     pub last: Option<Sample>,
     /// Temperature of the room, C.
     pub ambient_c: f64,
@@ -187,7 +187,7 @@ impl Seconds {
         Doing::Pulse(Runner::new(acts, now), places)
     }
 
-    /// Keeps the resistances of the pulses that have just ended; unreadable ones tell nothing.
+    /// Keeps the resistances of the pulses that have just ended; drops unreadable ones.
     fn keep_pulses(&mut self, device: &Device, now: RigTime) {
         let Doing::Pulse(runner, places) = &self.doing else {
             return;
@@ -261,7 +261,7 @@ impl Seconds {
         self.kept.push(&now);
     }
 
-    /// Returns what pages show of this part of the test.
+    /// Returns the passes, temperatures, outputs and curve that pages show.
     pub fn shown(&self) -> BatchShown {
         let passes = match &self.work {
             Some(Work::Passes(passes)) => passes.progress(),
@@ -285,7 +285,7 @@ impl Seconds {
         }
     }
 
-    /// Checks thermometers and power outside of the passes, whose watch knows more.
+    /// Checks thermometers and power before the passes and in experiments; during passes [`Work`] checks more.
     fn check_sensors(&mut self, seen: &Seen) -> Result<(), Finding> {
         if matches!(self.work, Some(Work::Passes(_))) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! An experiment without parts: the identification is over; the oscillation of a tuning follows.
+//! An experiment with the chamber after its identification: a tuning adds an oscillation. No part is tested.
 
 use super::super::Finding;
 use super::super::device::Device;
@@ -15,7 +15,7 @@ use chamber::watch::{Second, Watch};
 
 /// Rest between identification and oscillation, s.
 const REST_S: u32 = 120;
-/// Least power that is assumed to hold the temperature of the oscillation, 1 = full heater.
+/// Least power with which an oscillation begins around its temperature, 1 = full heater.
 const LEAST_HOLDING: f64 = 0.02;
 
 /// The experiment after its identification.
@@ -55,7 +55,8 @@ impl Trial {
         }
     }
 
-    /// Performs a second and returns the command; `None` when the experiment is over.
+    /// Performs one second of the experiment and returns the command for heater and vent; `None` when the experiment is
+    /// over. `control_c` is the reading of the control thermometer, C.
     ///
     /// # Errors
     /// Fails with the trouble of the chamber; the caller switches the heater off.

@@ -1,9 +1,9 @@
 //! Conformity of an AC part: after a step of its control to the turn-off voltage it blocks within its turn-off time,
 //! and after a step to the turn-on voltage it conducts within its turn-on time in both polarities.
 //!
-//! The control voltage stays a guard band away from the limit, on the side that is harder for the part. A part that
-//! fails there is tried a guard band beyond the limit, then far beyond: this tells a wrong threshold from an output
-//! that is stuck on or never turns on.
+//! The control voltage stays a guard band away from the limit, on the side that is harder for the part. When a part
+//! fails there, the test tries a guard band beyond the limit, then far beyond: this tells a wrong threshold from an
+//! output that is stuck on or never turns on.
 
 use super::super::board::Position;
 use super::super::given::{Given, NotDelivered};
@@ -32,7 +32,8 @@ const BLOCKED: f64 = 0.4;
 /// The current of a blocked output may exceed its limit by this share, because the digitizer has errors.
 const ROOM: f64 = 0.05;
 
-/// An output that still conducts this long after its control is off is stuck on, s.
+/// Time after a step of the control, s, from which an output that still conducts is stuck on, and one that still blocks
+/// never turns on.
 const LATE_S: f64 = 0.2;
 
 /// Polarities that conduct in a period of a record.
@@ -73,7 +74,7 @@ pub fn block_acts(
 }
 
 /// Returns the acts that let the part conduct at its nominal voltage for a period and record its answer to a step down
-/// to a level, from the step on. It must block from `within_s` after the step on.
+/// to a level, from the step on. The part must block from `within_s` after the step on.
 pub fn falling_acts(
     state: &mut State,
     (level_v, within_s): (f64, f64),
@@ -169,7 +170,7 @@ pub fn conduct_acts(
     rising_acts(state, (level_v, plan.on_s), plan, ac, points)
 }
 
-/// Returns the acts that record the output long after its control has gone to the nominal voltage.
+/// Returns the acts that record the output 0.2 s after its control has gone to the nominal voltage.
 fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec<Act> {
     let scales = ac.conducts(0.0);
     let mut acts = close(state, Position::Line, ac, points);
@@ -189,8 +190,8 @@ fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Ve
     acts
 }
 
-/// Returns the acts that step the control from 0 V to a level and record the output from the step on. It must conduct
-/// from `within_s` after the step on.
+/// Returns the acts that step the control from 0 V to a level and record the output from the step on. The output must
+/// conduct from `within_s` after the step on.
 pub fn rising_acts(
     state: &mut State,
     (level_v, within_s): (f64, f64),

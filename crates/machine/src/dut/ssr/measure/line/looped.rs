@@ -62,7 +62,7 @@ pub struct Drops<'a> {
     is_referenced: bool,
 }
 
-/// What the record of a loop shows.
+/// Figures of a conducting output, read from the record of a loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnState {
     /// Drop at the peak of the rated current, V: mean of both polarities.
@@ -147,7 +147,8 @@ impl<'a> Drops<'a> {
         (periods >= 1.0).then(|| (begins_s, begins_s + periods / self.current.hz))
     }
 
-    /// Reads everything; none when there are too few samples. The channel of the drop follows up to `most_v`.
+    /// Returns the figures of the conducting output; `None` when there are too few samples. The channel of the drop
+    /// follows the voltage up to `most_v`.
     pub fn read(&self, most_v: f64) -> Option<OnState> {
         let whole = self.whole()?;
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
@@ -204,7 +205,8 @@ impl<'a> Drops<'a> {
         Some((squares / (to - from) as f64).sqrt())
     }
 
-    /// Returns the voltage of the output, from the finer channel up to its end at `most_v`.
+    /// Returns the voltage of the output, V: from the channel of the drop below `most_v`, above it from the coarser
+    /// channel.
     fn at(&self, index: usize, most_v: f64) -> f64 {
         let volts = self.volts.at(index);
         match volts.abs() < most_v {
@@ -225,7 +227,8 @@ impl<'a> Drops<'a> {
         )
     }
 
-    /// Returns a value in each period from the begin of the current on; `of` gives it for the time between two instants.
+    /// Returns a value of each period from the begin of the current on; `of` computes the value between two instants,
+    /// s.
     fn periods(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<Vec<f64>> {
         let period_s = 1.0 / self.current.hz;
         let begins_s = self.begins_s()?;
@@ -239,8 +242,9 @@ impl<'a> Drops<'a> {
     }
 }
 
-/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V, from the drops of its periods:
-/// the first one, whose mean an output has after some 10 ms whatever its time constant, and the last two, around 200 ms.
+/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V; `peaks` holds the drop of each
+/// period. The first period stands for 10 ms: any output, fast or slow, reaches the mean of this period after some 10
+/// ms. The mean of the last two periods stands for 200 ms.
 fn drift_v(peaks: &[f64]) -> Option<f64> {
     let (first, last) = (peaks.first()?, peaks.last_chunk::<LATE>()?);
     Some(last.iter().sum::<f64>() / LATE as f64 - first)

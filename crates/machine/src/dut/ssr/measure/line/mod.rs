@@ -38,11 +38,11 @@ pub enum Level {
     /// Unknown: this test has not set it.
     #[default]
     Unknown,
-    /// That of the line.
+    /// Voltage of the line.
     Line,
-    /// That of the loop, and not yet measured.
+    /// Voltage of the loop, not yet measured.
     Loop,
-    /// That of the loop, and measured.
+    /// Voltage of the loop, measured.
     LoopProven,
 }
 

@@ -14,7 +14,7 @@ pub enum Shift {
     Beyond,
     /// Far beyond the limit: without control, or at the nominal voltage.
     Far,
-    /// As far beyond, after a longer time.
+    /// As far beyond the limit as `Far`, after a longer time.
     Late,
 }
 
@@ -25,7 +25,7 @@ pub enum Reference {
     Zero,
     /// Open, fed by the SMU: the gain of the clamped channel.
     Gain,
-    /// 1 kohm on the line: ratio and delay of voltage and current.
+    /// 1 kohm on the line: gain and delay of the voltage channel relative to the current channel.
     Ratio,
     /// Open, on the line: the admittance of the fixture.
     Stray,

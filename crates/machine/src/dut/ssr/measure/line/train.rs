@@ -26,10 +26,12 @@ const LATCHES: f64 = 0.3;
 
 /// Time from a zero of the mains within which the voltage shows the time of a turn-on, microseconds.
 const NEAR_US: f64 = 400.0;
-/// Share of the clamp voltage up to which the clamped channel is compared with the divided one.
+/// Share of the clamp voltage up to which the clamped channel follows the signal, so that it can be compared with the
+/// divided one.
 const FOLLOWED: f64 = 0.85;
 
-/// Returns the acts of the train. The record is read while the line is open and the source goes to the loop.
+/// Returns the acts of the train. The test reads the record after the contactor of the line has opened, while the
+/// source goes to the voltage of the loop.
 pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec<Act> {
     let scales = ac.train();
     let mut acts = close(state, Position::LinePulsed, ac, points);
@@ -52,7 +54,7 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
     acts
 }
 
-/// What the record of a train shows.
+/// Mains and answers of the output, read from the record of a train.
 pub struct Walk {
     /// The mains, fitted while the output blocks.
     pub mains: Mains,
@@ -143,8 +145,8 @@ pub fn conclude(
     Ok(Next::Planned)
 }
 
-/// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value of all pulses, averaged
-/// over the values that lie below it by no more than two intervals of the samples explain.
+/// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value of all pulses: the mean of
+/// the values that lie below the greatest one by no more than two intervals of the samples explain.
 fn on_found(state: &mut State, plan: &Plan, ac: &AcPlan, walk: &Walk) {
     let us = Unit::Microsecond;
     let counts =
