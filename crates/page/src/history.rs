@@ -96,13 +96,13 @@ pub(super) async fn list(
 }
 
 /// `GET /api/history/batches`.
-pub(super) async fn batches(State(app): App, Asked(lot): Asked<OneLot>) -> JsonResult<Vec<Batch>> {
+pub(super) async fn batches(readers: Readers, Asked(lot): Asked<OneLot>) -> JsonResult<Vec<Batch>> {
     let filter = filter(lot);
     let read = move |archive: &Archive| {
         checks::known_runs(archive, &filter)?;
         Ok(archive.batches(&filter)?)
     };
-    app.readers.read(read).await.map(Json)
+    readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/yield`.

@@ -145,7 +145,7 @@ function showPart(part) {
 
 // Draws the batch in which the part was judged, with the switchings of its own contact; hides the drawing without one.
 async function readBatch(part, isNewest) {
-  const batches = await (await ask("/api/history/batches" + query({lot: part.lot, run: part.run}))).json();
+  const batches = await (await ask("api/history/batches" + query({lot: part.lot, run: part.run}))).json();
   if (!isNewest()) return;
   const judged = seconds(part.time);
   const batch = batches.find((it) => seconds(it.begin) <= judged && judged <= seconds(it.ended));

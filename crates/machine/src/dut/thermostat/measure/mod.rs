@@ -270,7 +270,7 @@ impl Test {
     fn seconds(&self) -> Option<&Seconds> {
         match &self.state {
             State::Seconds(seconds) => Some(seconds),
-            State::Cold(_) | State::Drops(..) | State::Off(..) => self.ran.as_ref(),
+            State::Cold(_) | State::Drops(..) | State::Off(..) => self.ran.as_deref(),
         }
     }
 
