@@ -92,6 +92,7 @@ pub struct BatchSocket {
 pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &BatchRecord) -> Result<()> {
     const DOING: &str = "recording a batch";
     assert!(it.begin_us <= it.ended_us, "a batch that ends first");
+    assert!(it.number > 0, "a batch without its number");
     let run = row_ids.run(&it.lot)?;
     let number = signed("the number of a batch", it.number)?;
     let add = "INSERT INTO batch (run_id, number, begin_us, ended_us) VALUES (?1, ?2, ?3, ?4)
@@ -110,6 +111,11 @@ pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &BatchRecord) -
 
 fn insert_signal(tx: &Transaction<'_>, batch: i64, it: &BatchSignal) -> rusqlite::Result<()> {
     let BatchSignal { seq, curve } = it;
+    let is_of_socket = curve.signal.starts_with(SOCKET);
+    assert!(
+        is_of_socket || seq.is_none(),
+        "a part in the air of the chamber"
+    );
     let Some((begin_us, _)) = curve.samples.first() else {
         return Ok(());
     };

@@ -304,26 +304,45 @@ impl Identification {
 mod tests {
     use super::*;
 
-    /// Identifies a chamber that settles within a minute at a step of the heater and then moves by a slope, K/s.
-    fn identified(slope_k_per_s: f64) -> Result<Identified, IdentifyError> {
-        let mut run = Identification::new(0.15, 25.0, 90.0);
+    /// Returns the readings, C, of a chamber that settles within a minute at a step of the heater and then moves by a slope,
+    /// K/s.
+    fn readings_c(slope_k_per_s: f64) -> Vec<f64> {
+        let [rest, heat, coast, vent] = LENGTHS_S;
         let (mut heated_s, mut settled_k) = (0.0, 0.0);
-        loop {
-            match run.step(25.0 + settled_k + slope_k_per_s * heated_s)? {
-                Step::Done(found) => return Ok(found),
-                Step::Go(command) => {
-                    let heats = command.heater > 0.0;
-                    heated_s += f64::from(u8::from(heats));
-                    settled_k += (if heats { 8.0 } else { 0.0 } - settled_k) / 20.0;
-                }
-            }
-        }
+        let reading = |second| {
+            let found_c = 25.0 + settled_k + slope_k_per_s * heated_s;
+            let heats = (rest..rest + heat).contains(&second);
+            heated_s += f64::from(u8::from(heats));
+            settled_k += (if heats { 8.0 } else { 0.0 } - settled_k) / 20.0;
+            found_c
+        };
+        (0..=rest + heat + coast + vent).map(reading).collect()
+    }
+
+    /// Runs over these readings; returns the last answer.
+    fn run_over(readings_c: &[f64]) -> Result<Step, IdentifyError> {
+        let mut run = Identification::new(0.15, 25.0, 90.0);
+        let mut answers = readings_c.iter().map(|it| run.step(*it));
+        let ended = answers.find(|it| !matches!(it, Ok(Step::Go(_))));
+        ended.expect("a run that ends")
     }
 
     #[test]
-    fn a_response_that_sinks_under_power_gives_no_figures() {
-        assert!(identified(0.01).is_ok());
-        let found = identified(-0.01);
+    fn a_response_that_sinks_under_power_ends_the_run() {
+        let rising = run_over(&readings_c(0.01));
+        assert!(matches!(rising, Ok(Step::Done(_))), "{rising:?}");
+        let sinking = run_over(&readings_c(-0.01));
+        assert!(
+            matches!(sinking, Err(IdentifyError::Stalls { .. })),
+            "{sinking:?}"
+        );
+    }
+
+    #[test]
+    fn figures_without_a_rise_are_refused() {
+        let mut run = Identification::new(0.15, 25.0, 90.0);
+        run.readings_c = readings_c(-0.01);
+        let found = run.figures();
         let is_refused = |slope_k_per_s| slope_k_per_s < 0.0;
         assert!(
             matches!(found, Err(IdentifyError::NotAbove { slope_k_per_s, .. }) if is_refused(slope_k_per_s)),

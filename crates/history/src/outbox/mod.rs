@@ -227,6 +227,7 @@ impl Outbox {
         const DOING: &str = "confirming a batch";
         let tx = self.transaction().doing(DOING)?;
         let target = read_target(&tx, url).doing(DOING)?;
+        assert!(!batch.is_empty(), "a batch without a name");
         if target.confirmed.as_deref() == Some(batch) {
             return Ok(());
         }
@@ -304,5 +305,6 @@ fn half(tx: &Transaction<'_>, target: &Target) -> rusqlite::Result<i64> {
     const COUNT: &str = "SELECT count(*) FROM outbox JOIN target ON target.id = target_id
         WHERE target_id = ?1 AND outbox.id <= pending_to";
     let entries: i64 = tx.query_row(COUNT, [target.id], |row| row.get(0))?;
+    assert!(target.pending.is_some(), "half of no batch");
     Ok((entries / 2).max(1))
 }
