@@ -1,7 +1,6 @@
 //! Batches of parts that were tested together: curves of the air in their chamber, and switchings of each socket.
 //!
-//! A batch of an hour takes some 10 kB: its air has a point every five seconds, in the code of
-//! [`CurveRecord`]. A server with many rigs has no batches.
+//! The air has a point every five seconds, in the code of [`CurveRecord`]. A server with many rigs has no batches.
 
 use super::curve::{packed, unpacked};
 use super::error::{Doing, HistoryError, Result};
