@@ -40,17 +40,7 @@ impl Rig {
     /// last part in the machine.
     pub fn run(&self, lot: &str, count: u64, values: usize) {
         let mut store = Store::open(&self.db).unwrap();
-        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
-        store
-            .begin_lot(&LotRecord {
-                lot: lot.to_owned(),
-                recipe: "jzc-22f-012".to_owned(),
-                recipe_hash: snapshot_hash(&recipe_snapshot),
-                recipe_snapshot,
-                opened_at_us: BEGIN_US,
-                ..LotRecord::default()
-            })
-            .unwrap();
+        store.begin_lot(&lot_record(lot)).unwrap();
         let rows: Vec<Row> = (1..=count)
             .map(|seq| Row::Part(part(lot, seq, values)))
             .collect();
@@ -74,16 +64,7 @@ impl Rig {
     /// Tests four parts of a lot, does `between`, and then notes that the last test was interrupted and another part landed.
     pub fn cut_off(&self, lot: &str, between: impl FnOnce()) {
         let mut store = Store::open(&self.db).unwrap();
-        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
-        let record = LotRecord {
-            lot: lot.to_owned(),
-            recipe: "jzc-22f-012".to_owned(),
-            recipe_hash: snapshot_hash(&recipe_snapshot),
-            recipe_snapshot,
-            opened_at_us: BEGIN_US,
-            ..LotRecord::default()
-        };
-        store.begin_lot(&record).unwrap();
+        store.begin_lot(&lot_record(lot)).unwrap();
         let parts: Vec<Row> = (1..=4).map(|seq| Row::Part(part(lot, seq, 3))).collect();
         store.record(&parts).unwrap();
         between();
@@ -102,15 +83,9 @@ impl Rig {
     /// Records what happens around the run of a lot after it: a good and a failed reference check, orders, a hold.
     pub fn gates(&self, lot: &str) {
         let mut store = Store::open(&self.db).unwrap();
-        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
         let record = LotRecord {
-            lot: lot.to_owned(),
-            recipe: "jzc-22f-012".to_owned(),
-            recipe_hash: snapshot_hash(&recipe_snapshot),
-            recipe_snapshot,
-            opened_at_us: BEGIN_US,
             retest: Some("wang".to_owned()),
-            ..LotRecord::default()
+            ..lot_record(lot)
         };
         store.begin_lot(&record).unwrap();
         let alarm = Alarm::from(AlarmCode::ReferenceCheckFailed);
@@ -157,16 +132,7 @@ impl Rig {
     /// Measures the reference part G-1 in a run of a lot, with a result of the check a second later.
     pub fn reference(&self, lot: &str, seq: u64, volts: f64) {
         let mut store = Store::open(&self.db).unwrap();
-        let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
-        let record = LotRecord {
-            lot: lot.to_owned(),
-            recipe: "jzc-22f-012".to_owned(),
-            recipe_hash: snapshot_hash(&recipe_snapshot),
-            recipe_snapshot,
-            opened_at_us: BEGIN_US,
-            ..LotRecord::default()
-        };
-        store.begin_lot(&record).unwrap();
+        store.begin_lot(&lot_record(lot)).unwrap();
         let mut golden = PartRecord {
             kind: "golden".to_owned(),
             serial: Some("G-1".to_owned()),
@@ -209,6 +175,19 @@ impl Rig {
     pub fn number(&self, sql: &str) -> i64 {
         let file = rusqlite::Connection::open(&self.db).unwrap();
         file.query_row(sql, [], |row| row.get(0)).unwrap()
+    }
+}
+
+/// Returns the record of a lot that opens at the first judgement.
+fn lot_record(lot: &str) -> LotRecord {
+    let recipe_snapshot = "name = \"jzc-22f-012\"\n".to_owned();
+    LotRecord {
+        lot: lot.to_owned(),
+        recipe: "jzc-22f-012".to_owned(),
+        recipe_hash: snapshot_hash(&recipe_snapshot),
+        recipe_snapshot,
+        opened_at_us: BEGIN_US,
+        ..LotRecord::default()
     }
 }
 
