@@ -31,6 +31,22 @@ export async function startAlone() {
   return rig;
 }
 
+/** Starts the page of all rigs of the database in `config/fleet.toml`. */
+export async function serveFleet(config, name) {
+  const rigs = new Rig(["--config", config, "--log", "warn", "--db", name + ".db", "fleet", "serve", "--listen", "127.0.0.1:0"]);
+  await rigs.listening;
+  return rigs;
+}
+
+/** Runs a command of the program to its end; fails with what it says. */
+export async function command(config, name, words) {
+  const child = spawn(PROGRAM, ["--config", config, "--log", "warn", "--db", name + ".db", ...words], { stdio: ["ignore", "ignore", "pipe"] });
+  let told = "";
+  child.stderr.on("data", (text) => told += text);
+  const status = await new Promise((resolve) => child.on("close", resolve));
+  if (status !== 0) throw new Error(`${words.join(" ")}: ${told}`);
+}
+
 /** Adds a person to the people of the rig with the files `name`. */
 export function addPerson(name, user, role) {
   const added = spawnSync(PROGRAM, ["--db", name + ".db", "user", "add", user, "--role", role, "--stdin"], { input: PASSWORD + "\n" });
@@ -59,7 +75,7 @@ class Rig {
     this.listening = new Promise((resolve, reject) => {
       this.process.stderr.on("data", (text) => {
         this.told += text;
-        const found = /page at (http:\/\/[^/]+)\//.exec(this.told);
+        const found = /page (?:of all rigs )?at (http:\/\/[^/]+)\//.exec(this.told);
         if (found) resolve(this.url = found[1]);
       });
       this.process.on("exit", () => reject(new Error("the program ended: " + this.told)));

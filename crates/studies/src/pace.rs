@@ -15,7 +15,7 @@ use quality::spread::median;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Least parts per second of wall time.
-const PARTS_PER_SECOND: f64 = 50.0;
+const PARTS_PER_SECOND: f64 = 150.0;
 /// Least solid-state relays per second of wall time; their records of the digitizer are long.
 const WAVES_PER_SECOND: f64 = 30.0;
 /// Seed of every run.
