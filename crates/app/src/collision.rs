@@ -101,7 +101,7 @@ impl LoadedScene {
     }
 }
 
-/// Loads a scene file and returns it with its text and format; the extension says the format.
+/// Loads a scene file and returns it with its text and format; the extension selects TOML or JSON.
 pub(crate) fn load_scene(path: &Path) -> anyhow::Result<(Scene, String, Format)> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| anyhow!("{}: not readable: {error}", path.display()))?;

@@ -1,4 +1,4 @@
-//! Controls that page, signals and scripts share with a run: stop flags and the view. They outlive the run.
+//! Controls that page, signals and scripts share with a run, and that outlive the run: stop flags and the view.
 
 use super::stop_signals::StopSignals;
 use super::traces::Traces;
@@ -21,7 +21,7 @@ pub struct Controls {
     pub attended: bool,
     /// Sends the view to the screens.
     pub view: watch::Sender<View>,
-    /// Sends the alarms about the databases of the fleet to the cycle, while they last.
+    /// Sends the active alarms about the databases of the fleet to the cycle.
     pub fleet: watch::Sender<Vec<Alarm>>,
     /// Traffic of the current run; `None` before its lines are open.
     traces: Arc<Mutex<Option<Traces>>>,

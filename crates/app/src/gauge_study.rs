@@ -15,7 +15,7 @@ use machine::dut::Characteristic;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, GaugeRrError, Reading, anova};
 
-/// Number of rigs, which take the place of operators. This number and the next two are usual for AIAG.
+/// Number of rigs, which take the place of operators. AIAG usually takes three operators, three trials and ten parts.
 const OPERATORS: u64 = 3;
 /// Number of times that each rig measures each part.
 const TRIALS: u64 = 3;
@@ -33,7 +33,8 @@ pub struct Figure {
     pub by_range: Option<GaugeRr>,
 }
 
-/// Returns the rig that stands for one operator: it has errors of its own and feeds the same parts again and again.
+/// Returns the rig that takes the place of one operator: a rig with errors of its own that feeds the same parts again
+/// and again. Returns a real rig unchanged.
 fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
     let _ = (operator, parts);
     match source.clone() {

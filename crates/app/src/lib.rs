@@ -1,7 +1,7 @@
 //! The application layer: a lot, a day of service, a story, a calibration and a follower of the traffic as types.
 //!
-//! The command line turns arguments into these types and results into text; nothing here reads an argument. Only
-//! [`progress`] writes to the terminal; log messages go through `tracing`.
+//! The command line turns arguments into these types and results into text; no module here reads a command-line
+//! argument. Only [`progress`] writes to the terminal; log messages go through `tracing`.
 //!
 //! | module | holds |
 //! |---|---|
@@ -171,11 +171,12 @@ pub fn block_on<T>(
     done.context("the run has no result")?
 }
 
-/// Creates a runtime of one thread for runs on `source`. When rig time is virtual, its clock is paused and it watches no
-/// file or socket: a rig in this process has none, and each step of the clock would ask the kernel for events.
+/// Creates a runtime of one thread for runs on `source`. In virtual time the runtime's clock is paused and its I/O
+/// driver is off: a rig in this process has no file or socket, and the driver would call the kernel at each step of the
+/// clock.
 ///
 /// # Errors
-/// Fails when the operating system refuses it.
+/// Fails when the operating system refuses the runtime.
 pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
     let mut builder = tokio::runtime::Builder::new_current_thread();
     #[cfg(feature = "sim")]

@@ -22,9 +22,9 @@ use rigsim::{SharedRig, pty, scpi::serve::Served, wire};
 use scpi::LinkAddress;
 use tokio::sync::mpsc;
 
-/// How long a measuring line waits for a late reply, ms. The line requests the name of a silent module three times;
-/// with this wait that takes 0.65 s, so the host watchdogs of the line's other modules still receive their heartbeat in
-/// time.
+/// How long a measuring line waits for a late reply, ms. The line requests the name of a silent module three times; at
+/// this wait the three requests take 0.65 s, so the host watchdogs of the line's other modules receive their heartbeat
+/// in time.
 const LATE_REPLY_MS: u64 = 180;
 
 /// Name of the code reader's line for `--line` and on the simulated rig.
@@ -32,7 +32,7 @@ const READER: &str = "serial_reader";
 /// Number of readings that may wait for the cycle.
 const READINGS: usize = 16;
 
-/// Returns the code reader that gives this run its serial numbers; `None` when none does.
+/// Returns the code reader that gives this run its serial numbers; `None` for a run without a code reader.
 fn reader<'a>(context: &LotContext<'a>) -> Option<&'a SerialReaderSettings> {
     let source = context.plant.lot.serial.as_ref().map(|it| it.source);
     let reads = context.purpose == Purpose::Lot && source == Some(SourceName::Reader);
@@ -49,7 +49,7 @@ pub struct Lines {
     keeper: Keeper,
     /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
-    /// Queue ends of the instruments that the cycle holds, in the order of the wiring.
+    /// Queue ends that the cycle holds for the instruments, in the order of the wiring.
     pub instruments: Vec<InstrumentEnds>,
     instrument_tasks: Vec<InstrumentTask>,
     /// Readings of the code reader; `None` in a lot without one.
@@ -102,7 +102,7 @@ impl Lines {
         self.instrument_logs = tasks.map(|it| it.log.clone()).collect();
     }
 
-    /// Waits until every task has ended, and so has made its instrument safe or given up.
+    /// Waits until the task of every instrument has ended, and so has made its instrument safe or given up.
     pub async fn end_instruments(&mut self) {
         for task in std::mem::take(&mut self.instrument_tasks) {
             task.end().await;
@@ -148,7 +148,7 @@ impl Lines {
         self.open(plant, line, bus::serial_port(path, baud), pace);
     }
 
-    /// Starts the task of the code reader; `open` opens its port, again after every failure.
+    /// Starts the task of the code reader; `open` opens the port, and again after every failure.
     fn open_reader(&mut self, settings: &SerialReaderSettings, open: OpenPort, pace: &Pace) {
         let (given, readings) = mpsc::channel(READINGS);
         let reading = bus::run_reader(open, settings.no_code.clone(), *pace, given);
@@ -156,7 +156,7 @@ impl Lines {
         self.readings = Some(readings);
     }
 
-    /// Starts the task of a line; `open` opens its port, again after every failure.
+    /// Starts the task of a line; `open` opens the port, and again after every failure.
     fn open(&mut self, plant: &Plant, line: LineId, open: OpenPort, pace: &Pace) {
         let settings = settings(plant, line);
         self.logs
@@ -255,16 +255,16 @@ fn instrument_tasks<'a>(
     }
 }
 
-/// Returns the present time, which no other run has as its seed.
+/// Returns the present time, microseconds since 1970 UTC: a seed that no other run has.
 fn started_us() -> u64 {
     jiff::Timestamp::now().as_microsecond().unsigned_abs()
 }
 
-/// Checks that the wiring has every line or instrument that `--line` names, and that the link of an instrument can be
-/// read.
+/// Checks that the wiring has every line or instrument that `--line` names, and that the link given for an instrument
+/// is a valid address.
 ///
 /// # Errors
-/// Fails on the first name that the wiring lacks, and on a link that cannot be read.
+/// Fails on the first name that the wiring lacks, and on an invalid address.
 pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
     let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
     let reader = plant.serial_reader.as_ref().map(|_| READER);
@@ -328,7 +328,7 @@ async fn simulated_lines(
             let mut open = bus::from_streams(move || plug.open());
             match (name == READER, reader) {
                 (true, Some(reader)) => lines.open_reader(reader, open, pace),
-                // The line ends, because its port is opened and closed at once.
+                // Nobody reads codes: the simulated reader ends when its port is opened and closed at once.
                 (true, None) => drop(open()),
                 (false, _) => lines.open(plant, named(&name)?, open, pace),
             }

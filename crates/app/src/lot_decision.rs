@@ -45,7 +45,7 @@ pub fn write(db: &Path, order: &Order, by: &By, about: AboutLot<'_>) -> Result<(
         .map_err(trouble)
 }
 
-/// Returns the audit row of an order that is given while no run of its lot is under way.
+/// Returns the audit row of an order that a person gives while no run of its lot is under way.
 pub fn audit(order: &Order, by: &By) -> Row {
     Row::Order(OrderRecord {
         lot: None,

@@ -12,7 +12,8 @@ pub struct OrderQueue {
 }
 
 impl OrderQueue {
-    /// Returns a queue that stays open and never delivers an order; an unattended station resets and starts by itself.
+    /// Returns a queue that stays open and never delivers an order, for an unattended station, which resets and starts
+    /// by itself.
     pub fn without_orders() -> Self {
         let (given, orders) = mpsc::channel(1);
         Self {

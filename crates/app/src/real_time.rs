@@ -1,8 +1,8 @@
 //! Runs the lines and the cycle on a thread of their own, raised above all ordinary processes where the system allows
 //! it.
 //!
-//! At real pace neither history nor page nor log run on this thread. In virtual time the caller's own thread takes its
-//! place, because its clock is the clock of the rig.
+//! At real pace neither history nor page nor log run on this thread. In virtual time the lines and the cycle run on the
+//! caller's thread, because the paused clock of that thread's runtime is the clock of the rig.
 
 use anyhow::Context;
 use bus::{Pace, Passage};
@@ -29,20 +29,20 @@ pub const PRIORITY: u8 = 49;
 /// Interval of the waits of a latency test, as cyclictest has it.
 pub const INTERVAL: Span = Span::ms(1);
 
-/// Longest time for which the thread waits at its end for tasks that must end by themselves.
+/// Longest time for which the thread, before it ends, waits for tasks that must end by themselves.
 const ENDS_WITHIN: Duration = Duration::from_secs(12);
 
 /// Spawns tasks onto the rig's thread.
 #[derive(Debug, Clone)]
 pub struct Keeper {
-    /// Spawns tasks that are cut off when the thread ends.
+    /// Spawns tasks that are aborted when the thread ends.
     pub handle: Handle,
     /// Each task that must end by itself holds a clone.
     awaited: mpsc::Sender<()>,
 }
 
 impl Keeper {
-    /// Spawns a task for whose end the thread waits, at most [`ENDS_WITHIN`].
+    /// Spawns a task for which the thread, before it ends, waits for at most [`ENDS_WITHIN`].
     pub fn spawn<T: Send + 'static>(
         &self,
         task: impl Future<Output = T> + Send + 'static,
@@ -55,7 +55,7 @@ impl Keeper {
     }
 }
 
-/// A task that is cut off when this handle is dropped.
+/// Handle of a task; dropping the handle aborts the task.
 #[derive(Debug)]
 pub struct Owned<T>(JoinHandle<T>);
 
@@ -80,19 +80,19 @@ impl<T> Drop for Owned<T> {
     }
 }
 
-/// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks; at real pace it first waits for
-/// those of [`Keeper::spawn`].
+/// A thread whose runtime serves the lines and the cycle. At real pace, dropping the value waits for the tasks of
+/// [`Keeper::spawn`] and then aborts all other tasks.
 pub struct RigThread {
     keeper: Keeper,
-    /// Rights that the system grants the thread; the lateness in it is empty.
+    /// Rights that the system grants the thread; this view holds no lateness.
     pub rights: HostView,
-    /// How late this computer passes bytes on; measured at real pace.
+    /// How late this computer passes bytes on; measured at real pace only.
     pub passage: Passage,
     own: Option<(oneshot::Sender<()>, Thread<()>)>,
 }
 
 impl RigThread {
-    /// Returns the current thread in virtual time; otherwise starts a thread and raises its priority.
+    /// Takes the current thread in virtual time; at real pace starts a thread and raises its priority.
     ///
     /// # Errors
     /// Fails when the system refuses a thread or its runtime.
@@ -151,7 +151,7 @@ impl RigThread {
 
 impl Drop for RigThread {
     fn drop(&mut self) {
-        // Other clones are those of tasks.
+        // From here on only tasks hold clones of the sender.
         self.keeper.awaited = mpsc::channel(1).0;
         if let Some((stop, thread)) = self.own.take() {
             let _ = stop.send(());

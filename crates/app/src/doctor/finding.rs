@@ -62,7 +62,7 @@ impl Check {
 pub enum Health {
     /// As expected.
     Ok,
-    /// Could not be checked.
+    /// The check was not possible.
     Unknown,
     /// The rig works, but less safely or less precisely than it could.
     Warning,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 pub struct Counts {
     /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<&'static str, u64>,
-    /// Parts of the lot that were seen by the beam of a bin, by bin.
+    /// Parts of the lot that the beam of a bin has seen, by bin.
     pub bins: BTreeMap<String, u64>,
     /// Alarms of the run.
     pub alarms: u64,

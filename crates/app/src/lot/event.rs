@@ -28,7 +28,7 @@ pub enum LotEvent {
 
 /// Receives the events of a run; a page, a terminal or a script implements it.
 pub trait Subscriber {
-    /// Receives an event; `lot` already takes it into account.
+    /// Receives an event, which `lot` already takes into account.
     fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>);
 }
 
@@ -73,7 +73,7 @@ impl Subscriber for OnceLock<Found> {
 impl Subscriber for mpsc::UnboundedSender<Event> {
     fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(event) = event {
-            // A receiver that is gone needs no events.
+            // Sending fails only after the receiver is gone, which then needs no events.
             let _ = self.send(event.clone());
         }
     }

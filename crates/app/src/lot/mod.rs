@@ -131,8 +131,7 @@ impl LotRunner<'_> {
         }
         let ended = running.end().await;
         lines.end_instruments().await;
-        // The cycle has dropped its sender, so this ends; the last snapshot is then on the page before the end of the
-        // run.
+        // Ends because the cycle has dropped its sender; so the page gets the last snapshot before the end of the run.
         showing.await?;
         if let Some(limiter) = limiter {
             limiter.abort();
@@ -239,7 +238,8 @@ impl Stream<'_, '_> {
         }
     }
 
-    /// Tells the cycle that rows are pending.
+    /// Tells the cycle that rows are pending; ends the run when the outage is too long, or when `error` does not come
+    /// from the history.
     fn unwritten(&mut self, outage: &mut Option<Outage>, error: &anyhow::Error) {
         let (now, give_up_s) = (self.retry.pace.now(), self.retry.give_up_s);
         if outage.is_none() {
@@ -280,10 +280,11 @@ impl Stream<'_, '_> {
         Ok(())
     }
 
-    /// Ends the run in the history: writes the parts that never landed, then the summary, then the end.
+    /// Passes the parts that never landed and then the summary to all subscribers; writes the end of the run into the
+    /// history.
     ///
     /// # Errors
-    /// Fails when the history cannot be written for too long; the run then stays open in it.
+    /// Fails when the history cannot be written for too long; the run then stays open in the history.
     async fn close(
         &mut self,
         ended: &Ended,

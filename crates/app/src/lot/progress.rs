@@ -25,8 +25,8 @@ use units::RigTime;
 pub struct PartUnderWay {
     /// The part with its record and verdict.
     pub judged: Box<Judged>,
-    /// Time from the moment the previous part left the nest to the moment this one left it, seconds of rig time; `None`
-    /// before it leaves, and for the first part.
+    /// Rig time from the moment the previous part left the nest to the moment this part left the nest, seconds; `None`
+    /// while this part is in the nest, and for the first part.
     pub cycle_s: Option<f64>,
     /// Number of reference parts judged so far, this part included if it is one.
     pub reference_count: u64,
@@ -117,7 +117,7 @@ impl<'a> LotProgress<'a> {
                 let mut active = listed.iter().filter(|it| it.is_active());
                 self.trouble_is_over = !active.any(|it| has_reaction(&it.alarm));
             }
-            // An order caused this state: the last trouble ended before.
+            // An order caused this state, because the last trouble has ended.
             Event::State(State::Aborting | State::Suspending) if self.trouble_is_over => {
                 self.trouble = None;
             }

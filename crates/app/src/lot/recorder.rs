@@ -217,11 +217,11 @@ impl Recorder {
         }
     }
 
-    /// Writes the pending rows; returns the ordinal of the last part now on the disk, or `None` when it is the same as
-    /// before.
+    /// Writes the pending rows; returns the ordinal of the last judged part now on the disk, or `None` when no judged
+    /// part was pending.
     ///
     /// # Errors
-    /// Fails when the transaction fails, which then writes nothing; the rows stay pending, in order.
+    /// Fails when the transaction fails and so writes nothing; the rows stay pending, in order.
     pub async fn commit(&mut self) -> anyhow::Result<Option<u64>> {
         if !self.rows.is_empty() {
             self.queue_contents();
@@ -254,7 +254,7 @@ impl Recorder {
     /// Writes the pending rows and closes the run.
     ///
     /// # Errors
-    /// Fails when the history cannot be written; what is not written yet stays pending.
+    /// Fails when the history cannot be written; rows that are not written yet stay pending.
     pub fn close(&mut self, lot: &LotProgress) -> anyhow::Result<()> {
         self.write()?;
         let end_us = lot.context.wall_us(lot.end());

@@ -72,7 +72,7 @@ impl Subscriber for Screen {
     }
 }
 
-/// Returns true for a production part of a lot; reference parts and parts between lots are not shown.
+/// Returns true for a production part of a lot; the page shows neither reference parts nor parts judged between lots.
 fn is_shown(judged: &Judged, between_lots: bool) -> bool {
     !between_lots && matches!(judged.part.role, PartRole::Lot(_))
 }

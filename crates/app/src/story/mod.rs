@@ -1,8 +1,8 @@
 //! Plays a story: scripted faults and orders on the simulated rig, with a line-by-line account of what follows.
 //!
 //! A script ([`script`]) names faults and operator orders, each after an event instead of at a time, so a faster line
-//! gives the same story. The `narrator` writes what a mechanic beside the rig sees. It counts whole seconds from the
-//! first trouble and leaves out unrelated events.
+//! gives the same story. The `narrator` writes what a mechanic beside the rig sees, leaves out unrelated events, and
+//! counts whole seconds from the first trouble.
 //!
 //! A story is attended: alarms and stops do not end the run. It ends when the script is played and the lot complete, or
 //! after [`SILENCE_TIMEOUT`] without an event.

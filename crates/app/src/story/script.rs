@@ -45,11 +45,10 @@ pub struct Step {
     pub action: Action,
 }
 
-/// Event that triggers a step. An event that is already past triggers the step at once, but a state must be the
-/// present one.
+/// Event that triggers a step. A past event triggers the step at once, but a state only while the machine is in it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Awaited {
-    /// The lot itself has begun.
+    /// The lot has begun: reference parts and calibration are done.
     Lot,
     /// The machine as a whole is in this PackML state.
     State(State),
