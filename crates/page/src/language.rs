@@ -1,4 +1,4 @@
-//! Language of a printed page: that of the request.
+//! Language of a printed page: the language that the request asks for.
 
 use super::api::Input;
 use axum::extract::FromRequestParts;
@@ -7,7 +7,7 @@ use axum::http::request::Parts;
 use history::report::Lang;
 use std::convert::Infallible;
 
-/// Language that the header `Accept-Language` prefers; English without one.
+/// Language that the header `Accept-Language` prefers; English without this header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Preferred(Lang);
 
@@ -37,7 +37,7 @@ impl Preferred {
     }
 }
 
-/// Returns the language of a tag such as `zh-CN`, without country and script.
+/// Returns the language of a tag such as `zh-CN`, without region and script.
 fn primary(tag: &str) -> &str {
     tag.split('-').next().unwrap_or_default()
 }

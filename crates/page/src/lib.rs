@@ -1,13 +1,13 @@
 //! The HTTP server: the pages, the view of the machine as JSON and as events, the history, figures for Prometheus.
 //!
-//! - Clients only read the state of the rig. They change it by *orders*, which the station takes or refuses with the
-//!   reason in its next turn.
-//! - The view comes through a watch channel, so that the cycle never waits for a client: a slow one skips to the latest
-//!   view, and views do not queue.
+//! - Clients read the state of the rig, and change it only by *orders*. In the next pass of the control cycle the
+//!   station accepts each order or refuses it with a reason.
+//! - The view comes through a watch channel, so that the cycle never waits for a client: a slow client skips to the
+//!   latest view, and views do not queue.
 //! - A route refuses with JSON: the status in words, the reason in English and Chinese, its code (`error.rs`).
 //! - A body has at most 16 kB. The server limits connections in number and time (`server.rs`). A request that changes
 //!   anything must not come from a page of another site.
-//! - When the program ends, every event stream ends, and connections still open are cut after [`GRACE`].
+//! - When the program ends, every event stream ends, and the server cuts connections still open after [`GRACE`].
 //!
 //! | route | answer |
 //! |---|---|
@@ -27,7 +27,8 @@
 //! | `GET /api/openapi.json` | the OpenAPI document |
 //! | `GET /metrics` | Prometheus text |
 //!
-//! Reading needs no login; orders and revisions do (`sessions.rs`). A route refuses every member that it does not take.
+//! Reading needs no login; orders and revisions need one (`sessions.rs`). A route refuses every member that it does not
+//! take.
 //!
 //! The page of many rigs has routes of its own, which only read (`fleet.rs`).
 //!
@@ -104,7 +105,7 @@ pub struct Shared {
     pub traffic: Traffic,
     /// Makes plans for tooling.
     pub plans: Arc<dyn PlanMaker>,
-    /// Queue to the cycle, which answers each order in its next turn.
+    /// Queue to the cycle, which answers each order in its next pass.
     pub orders: mpsc::Sender<OrderRequest>,
 }
 

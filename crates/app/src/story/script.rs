@@ -48,7 +48,7 @@ pub struct Step {
 /// Event that triggers a step. A past event triggers the step at once, but a state only while the machine is in it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Awaited {
-    /// The lot has begun: reference parts and calibration are done.
+    /// The lot has begun, after calibration and reference parts.
     Lot,
     /// The machine as a whole is in this PackML state.
     State(State),

@@ -6,7 +6,8 @@ use crate::access::{SESSION_S, SetupCode, password};
 use rusqlite::{OptionalExtension, params};
 use std::time::Duration;
 
-/// Hash that no password matches: a login checks it for an unknown name, and so takes as long as for a known one.
+/// Hash that no password matches: a login with an unknown name checks this hash, and so takes as long as with a known
+/// name.
 const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
                       zY2ZxH5hG1m3pV0Q3mCkGd5dTn0l2yq0hXo1m3u9m6E";
 
@@ -103,7 +104,7 @@ impl Register {
         Ok(token)
     }
 
-    /// Returns the person who holds the session `token`; `None` for an unknown or expired one.
+    /// Returns the person who holds the session `token`; `None` for an unknown or expired token.
     pub fn holder(&self, token: &str, now_us: i64) -> Result<Option<Person>> {
         let sql = "SELECT name, role FROM session JOIN person ON person = name
                    WHERE token_sha256 = ?1 AND until_us > ?2";
