@@ -1,4 +1,4 @@
-//! `relayrig bus`: finds modules, sends one command, watches a line. It needs no rig file.
+//! `relayrig bus`: finds modules, sends one command, watches a line; needs no configuration.
 
 mod found;
 mod monitor;

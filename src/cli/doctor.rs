@@ -10,7 +10,7 @@ use app::source::LinePort;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Looks at an installation.
+/// Examines an installation.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig doctor

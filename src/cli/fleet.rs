@@ -74,7 +74,8 @@ pub fn run(files: &Files, args: &FleetArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Returns the databases that the command is for.
+/// Returns the databases of `fleet.toml`, or only the one with `url`. Fails without a database, or for an unknown
+/// `url`.
 fn chosen(
     files: &Files,
     fleet: &FleetSettings,

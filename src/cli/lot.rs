@@ -40,7 +40,7 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Refuse runs of the lot until it is released
+    /// Refuse runs of the lot until a person releases it
     #[command(after_help = "Example: relayrig lot hold A --by li --reason 'wrong label'")]
     Hold(Decided),
     /// Allow runs of the lot again
@@ -53,7 +53,7 @@ enum Action {
         after_help = "Example: relayrig lot close A --by li --reason 'rest of the reel returned'"
     )]
     Close(Decided),
-    /// Allow runs of a complete lot again, with the recipe that it has
+    /// Allow runs of a complete lot again, with the recipe of the lot
     #[command(
         after_help = "Example: relayrig lot reopen A --by zhao --reason 'forty parts were found'"
     )]

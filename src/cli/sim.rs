@@ -35,13 +35,14 @@ pub struct SimArgs {
     /// World instead of config/sim.toml
     #[arg(long, value_name = "FILE")]
     pub world: Option<PathBuf>,
-    /// Recipe whose parts are in the magazine; without it jzc-22f-012, ssr-dc-60v-3a, or the first recipe of the rig
+    /// Recipe whose parts are in the magazine [default: jzc-22f-012, ssr-dc-60v-3a or thermostat-ksd9700 where the rig
+    /// has it, else its first one]
     #[arg(long, value_name = "NAME")]
     pub recipe: Option<String>,
     /// Fault by name
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
-    /// True values of every specimen go to this file: as parts land, and at the end for those still inside
+    /// Write the true values of every part into this file: as parts land, and at the end for those still inside
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
     /// A symlink per line in this directory

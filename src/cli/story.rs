@@ -37,10 +37,10 @@ pub struct StoryArgs {
     /// Recipe in config/recipes
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     pub recipe: String,
-    /// True values of every specimen go to this file
+    /// Write the true values of every part into this file
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
-    /// Every fault of the script and every change of a digital output go to this file, one object per line
+    /// Write every fault of the script and every change of a digital output into this file, one JSON object per line
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
 }

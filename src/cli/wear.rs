@@ -36,7 +36,7 @@ enum Action {
     Replaced {
         /// Name of the counter
         name: String,
-        /// Person who replaced it
+        /// Person who replaced the part
         #[arg(long, value_name = "NAME")]
         by: String,
     },
