@@ -57,7 +57,7 @@ pub struct SimArgs {
     /// A module answers only at its own rate, as on a wire; without this option it answers at every rate
     #[arg(long)]
     pub heed_baud: bool,
-    /// Prints every change of a digital output and every expired host watchdog, one object per line
+    /// Print the journal of the rig (changes of outputs, faults, expired host watchdogs), one JSON object per line
     #[arg(long)]
     pub journal: bool,
     /// Names of all faults with unit and default
@@ -161,7 +161,7 @@ fn serve_instruments(file: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
     })
 }
 
-/// Prints every change of an output until the program ends.
+/// Prints the journal of the rig until the program ends.
 fn print_journal(journal: std::sync::mpsc::Receiver<rigsim::journal::Entry>) {
     std::thread::spawn(move || {
         let mut out = std::io::stdout();

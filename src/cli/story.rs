@@ -40,7 +40,7 @@ pub struct StoryArgs {
     /// Write the true values of every part into this file
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
-    /// Write every fault of the script and every change of a digital output into this file, one JSON object per line
+    /// Write the journal of the rig (changes of outputs, faults, expired host watchdogs), one JSON object per line
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
 }

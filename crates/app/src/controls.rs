@@ -40,8 +40,8 @@ impl Controls {
         }
     }
 
-    /// Makes Ctrl-C stop the lot, a second Ctrl-C abort it, and a third one end the program, until the returned thread
-    /// is dropped.
+    /// Makes Ctrl-C or SIGTERM stop the lot, a second signal abort the lot, and a third one end the program, until the
+    /// caller drops the returned handle.
     ///
     /// # Errors
     /// Fails when the operating system refuses the handlers or the thread.
@@ -50,7 +50,7 @@ impl Controls {
         StopSignals::listen(flags).context("catching Ctrl-C")
     }
 
-    /// Returns true once a stop or an abort has been ordered.
+    /// Returns true once a person or a signal has ordered a stop or an abort.
     pub fn is_stopping(&self) -> bool {
         let flags = [&self.stop, &self.abort];
         flags.iter().any(|flag| flag.load(Ordering::Acquire))
@@ -80,7 +80,7 @@ pub struct Interrupts {
 }
 
 impl Interrupts {
-    /// Listens from now on; a signal that arrives later is not lost. Panics outside a runtime.
+    /// Starts to listen; a signal that arrives before [`Self::next`] is not lost. Panics outside a runtime.
     ///
     /// # Errors
     /// Fails when the operating system refuses the handlers.

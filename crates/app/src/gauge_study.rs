@@ -1,9 +1,9 @@
-//! Gauge repeatability and reproducibility (AIAG) of the rig itself, on parts that it measures several times.
+//! Gauge repeatability and reproducibility (AIAG) of the rig itself, on parts that the rig measures several times.
 //!
-//! Three simulated rigs stand for the operators: each has errors of its own and is calibrated by its reference parts,
-//! as before any lot. Each measures the same ten parts three times. The parts are the same (fault `parts_seed` of the
-//! simulated rig), come in the same order (fault `refeed`), and operate a little differently each time, as real ones
-//! do. The history keeps the readings of each rig as one lot.
+//! Three simulated rigs take the place of the operators: each has errors of its own and is calibrated by its reference
+//! parts, as before any lot. Each measures the same ten parts three times. The parts are the same (fault `parts_seed`
+//! of the simulated rig), come in the same order (fault `refeed`), and operate a little differently each time, as real
+//! parts do. The history keeps the readings of each rig as one lot.
 
 use super::exit::Exit;
 use super::lot::{Purpose, Subscriber};
@@ -53,7 +53,7 @@ fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
 /// that did not complete.
 ///
 /// # Errors
-/// Fails on bad input, as any lot does.
+/// Fails on fewer than two parts, and on bad input, as any lot does.
 pub fn run(
     files: &Files,
     source: &RigSource,

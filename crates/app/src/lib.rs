@@ -5,7 +5,7 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`order`], [`source`] | the lot ordered, and its rig |
+//! | [`order`], [`source`] | the ordered lot, and its rig |
 //! | [`admission`] | checks before a lot may run |
 //! | [`lot`] | a run: one stream of events and its subscribers |
 //! | [`real_time`] | the thread of the lines and the cycle |
@@ -110,10 +110,10 @@ pub fn run_lot(
     run_answered(files, source, order, purpose, (&none, outer))
 }
 
-/// Runs one unattended lot; Ctrl-C stops it. `answers` go to the prompts of the lot; `outer` receives every event.
+/// Runs one unattended lot, which Ctrl-C stops. `answers` go to the prompts of the lot; `outer` receives every event.
 ///
 /// # Errors
-/// Fails on bad input: a configuration, lot, rig or answer that is refused before anything moves.
+/// Fails on bad input: a configuration, lot, rig or answer that the program refuses before anything moves.
 pub fn run_answered(
     files: &Files,
     source: &RigSource,
@@ -153,7 +153,7 @@ pub fn run_answered(
     })
 }
 
-/// Runs `work` on a runtime of one thread; in virtual time the runtime's clock is that of the rig.
+/// Runs `work` on a runtime of one thread; in virtual time the runtime's clock is the clock of the rig.
 ///
 /// # Errors
 /// Fails as `work` does, or when the runtime cannot start.

@@ -39,8 +39,8 @@ fn reader<'a>(context: &LotContext<'a>) -> Option<&'a SerialReaderSettings> {
     context.plant.serial_reader.as_ref().filter(|_| reads)
 }
 
-/// Function that returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules keep
-/// no count.
+/// Function that returns the number of EEPROM writes of all modules so far; `None` on a real rig, whose modules keep no
+/// count.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.
@@ -52,7 +52,7 @@ pub struct Lines {
     /// Queue ends that the cycle holds for the instruments, in the order of the wiring.
     pub instruments: Vec<InstrumentEnds>,
     instrument_tasks: Vec<InstrumentTask>,
-    /// Readings of the code reader; `None` in a lot without one.
+    /// Readings of the code reader; `None` in a lot without a code reader.
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Trace and health of each line, with its name.
     pub logs: Vec<(String, LineLog)>,
@@ -109,7 +109,7 @@ impl Lines {
         }
     }
 
-    /// Finishes a run on a simulated rig: writes its truth file, logs collisions, late replies and overdriven coils.
+    /// Finishes a run on a simulated rig: writes the truth file, logs collisions, late replies and overdriven coils.
     ///
     /// # Errors
     /// Fails when the file cannot be written.
@@ -192,10 +192,11 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
     settings
 }
 
-/// Opens every line of the plant; `keeper` runs their tasks.
+/// Opens every line and instrument of the plant; `keeper` runs their tasks.
 ///
 /// # Errors
-/// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built.
+/// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built or lacks an
+/// instrument.
 pub async fn open(context: &LotContext<'_>, pace: &Pace, keeper: &Keeper) -> anyhow::Result<Lines> {
     let lines = Lines::none(keeper);
     match context.source {

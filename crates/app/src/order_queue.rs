@@ -7,7 +7,7 @@ use tokio::sync::mpsc;
 #[derive(Debug)]
 pub struct OrderQueue {
     pub(super) orders: mpsc::Receiver<OrderRequest>,
-    /// Keeps the channel open, because the cycle stops reading orders from a closed one.
+    /// Keeps the channel open, because the cycle stops reading orders from a closed channel.
     _sender: Option<mpsc::Sender<OrderRequest>>,
 }
 

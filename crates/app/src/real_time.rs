@@ -1,5 +1,5 @@
-//! Runs the lines and the cycle on a thread of their own, raised above all ordinary processes where the system allows
-//! it.
+//! Runs the lines and the cycle on a thread of their own, with a priority above all ordinary processes where the system
+//! grants it.
 //!
 //! At real pace neither history nor page nor log run on this thread. In virtual time the lines and the cycle run on the
 //! caller's thread, because the paused clock of that thread's runtime is the clock of the rig.
@@ -26,7 +26,7 @@ use units::{RigTime, Span};
 
 /// Priority under SCHED_FIFO: above every ordinary process, below the kernel threads that handle interrupts (50).
 pub const PRIORITY: u8 = 49;
-/// Interval of the waits of a latency test, as cyclictest has it.
+/// Interval of the waits of a latency test, the default of cyclictest.
 pub const INTERVAL: Span = Span::ms(1);
 
 /// Longest time for which the thread, before it ends, waits for tasks that must end by themselves.
@@ -162,7 +162,7 @@ impl Drop for RigThread {
     }
 }
 
-/// Raises this thread to SCHED_FIFO and locks the memory of the program, as far as the system grants it.
+/// Raises this thread to SCHED_FIFO and locks the memory of the program, as far as the system grants these rights.
 fn raise() -> HostView {
     let mut rights = HostView::default();
     match raise_thread() {
@@ -182,13 +182,13 @@ pub enum Refused {
     /// The thread may not have a real-time priority.
     #[error("SCHED_FIFO: {0}")]
     Fifo(thread_priority::Error),
-    /// Memory may be locked up to a limit only, beyond which the system would refuse memory that the program needs.
+    /// The program may lock memory only up to a limit, beyond which the system would refuse it further memory.
     #[error("locked memory: found a limit of {limit_kb} kB, expected none")]
     Limit {
         /// The limit (RLIMIT_MEMLOCK), kB.
         limit_kb: u64,
     },
-    /// Memory may not be locked.
+    /// The program may not lock memory.
     #[error("locked memory: {0}")]
     Lock(rustix::io::Errno),
 }
@@ -243,7 +243,7 @@ impl BareLoop {
         let stopped = Arc::clone(&stop);
         let thread = std::thread::Builder::new().name("bare loop".into());
         let thread = thread.spawn(move || {
-            // Without the right the loop measures a thread of usual priority.
+            // Without the right to this priority, the loop measures a thread of usual priority.
             let _ = raise_thread();
             bare_loop(&stopped)
         });

@@ -1,4 +1,4 @@
-//! Restores a rig from a backup: checks history, people and configuration, then puts them in place.
+//! Restores a rig from a backup: copies and checks history, people and configuration, then puts the copies in place.
 //!
 //! Replaced files stay beside the restored ones as `NAME.before-TIME`. The restore replaces a file only after it has
 //! made and checked all copies.
@@ -30,7 +30,7 @@ enum Kept {
 /// An item to restore, with its path in the backup and its target.
 type Item<'a> = (Kept, &'a Path, PathBuf);
 
-/// A backup, with what it holds.
+/// A backup and its items.
 #[derive(Debug)]
 pub struct Contents {
     /// Folder of the backup, or its history file.

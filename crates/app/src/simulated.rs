@@ -1,4 +1,4 @@
-//! Builds the simulated rig of a run, or takes over one that lives from run to run.
+//! Builds the simulated rig of a run, or loads a simulated rig that lives from run to run.
 
 use super::order::LotOrder;
 use super::source::Simulated;
@@ -9,7 +9,7 @@ use rigsim::{Files, Options, SharedRig};
 /// A simulated rig that exists before and after the run.
 #[derive(Debug, Clone)]
 pub struct LiveRig {
-    /// The rig; the rig time of a run begins where the rig's own time stands.
+    /// The rig; each run takes the present time of the rig as its rig time zero.
     pub rig: SharedRig,
     /// Wall clock at rig time zero of the run, microseconds since 1970 UTC.
     pub epoch_us: i64,

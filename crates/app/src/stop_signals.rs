@@ -3,7 +3,7 @@
 //! | signal | effect |
 //! |---|---|
 //! | first | the run finishes the parts inside |
-//! | second | the run ends at once; after [`RUN_ENDS_WITHIN`] the program ends without it |
+//! | second | the run ends at once; after [`RUN_ENDS_WITHIN`] the program ends without the run |
 //! | third | the program ends without the run |
 //!
 //! The run has another thread, so these signals also end a program whose run never returns. The program then gives only

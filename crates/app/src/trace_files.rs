@@ -1,4 +1,4 @@
-//! Trace files beside the history, `NAME.alarm-MILLISECONDS-LINE.trace`: names, and deletion by number and age.
+//! Trace files beside the history, `NAME.alarm-MILLISECONDS-LINE.trace`: makes names, and deletes by number and age.
 
 use crate::order::folder_of;
 use config::HistorySettings;

@@ -4,7 +4,8 @@
 //! afterwards. A calibration stores the factors found. A verification stores no factors: each factor found must agree
 //! with the stored one within the combined expanded uncertainty (k = 3, because all fifteen must agree), and the
 //! history marks the stored calibration with the outcome. A rig whose calibration is overdue or failed its verification
-//! runs no lot until it is calibrated again.
+//! runs no lot until it is calibrated again. A kind that is calibrated by certificate takes its factors from the file
+//! of the certificate, without a run.
 
 mod compare;
 
@@ -33,7 +34,7 @@ const LOT: &str = "calibration";
 pub enum Calibrated {
     /// A calibration: the history holds the new factors.
     Stored(Box<Calibration>),
-    /// A verification: the stored factors beside those found now.
+    /// A verification: the stored factors beside the factors found now.
     Verified {
         /// One entry per factor.
         compared: Vec<FactorComparison>,

@@ -56,7 +56,7 @@ use tokio::sync::{mpsc, watch};
 pub struct LotRunner<'a> {
     /// History file.
     pub db: &'a Path,
-    /// Everything the run needs; its lot has passed admission.
+    /// Everything the run needs; admission has accepted the lot.
     pub context: LotContext<'a>,
     /// Controls shared with page, signals and scripts.
     pub controls: &'a Controls,
@@ -166,7 +166,7 @@ pub(crate) fn lost(error: &anyhow::Error) -> Exit {
     Exit::Trouble(Cause::history_lost(&format!("{error:#}")))
 }
 
-/// Returns the pace of rig time: virtual, or that of the wall clock.
+/// Returns the pace of rig time: virtual, or the pace of the wall clock.
 pub(crate) fn pace_of(source: &RigSource) -> Pace {
     match source.is_virtual() {
         true => Pace::virtual_time(),
@@ -181,7 +181,7 @@ struct Stream<'a, 'b> {
     screen: Screen,
     traces: Traces,
     outer: &'b mut dyn Subscriber,
-    /// Tells the cycle whether rows are written.
+    /// Tells the cycle whether the history is written, in an outage, or given up.
     history: watch::Sender<HistoryState>,
     retry: HistoryRetry<'a>,
 }
@@ -229,7 +229,7 @@ impl Stream<'_, '_> {
         }
     }
 
-    /// Publishes the ordinal of the last part on the disk, and the end of an outage.
+    /// Publishes `ordinal` as that of the last part on the disk, and ends an outage.
     fn written(&self, outage: &mut Option<Outage>, ordinal: u64, recorded: &AtomicU64) {
         recorded.fetch_max(ordinal, Ordering::AcqRel);
         if outage.take().is_some() {

@@ -15,7 +15,7 @@ use units::Span;
 pub(super) struct PriorState {
     /// Calibration that is still valid and was made in the supply range of the recipe; `None`: the run calibrates.
     pub calibration: Option<Calibration>,
-    /// Use counts of the wearing parts, as the history has them.
+    /// Use counts of the wearing parts, from the history.
     pub uses: Uses,
     /// Unacknowledged alarms of earlier runs.
     pub alarms: Vec<UnacknowledgedAlarm>,

@@ -1,10 +1,10 @@
 //! Writes the events of a run to the history.
 //!
 //! Between lots the history has no run until a part found inside needs a row; then the run of lot
-//! [`FOUND_LOT`](super::FOUND_LOT) begins. One transaction writes all pending rows; the recorder then publishes the
-//! ordinal (number within the run) of the last judged part, which allows the sorter to open its gripper. After a failed
-//! transaction its rows stay pending, in order. The database works on a blocking thread, one short task per
-//! transaction.
+//! [`FOUND_LOT`](super::FOUND_LOT) begins. One transaction writes all pending rows; [`Recorder::commit`] then returns
+//! the ordinal (number within the run) of the last judged part, whose publication allows the sorter to open its
+//! gripper. After a failed transaction its rows stay pending, in order. While the cycle runs, the database works on a
+//! blocking thread, one short task per transaction.
 
 use super::event::LotEvent;
 use super::journal::Journal;
@@ -40,7 +40,8 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the history and begins the lot's run; returns the state that the run takes over.
+    /// Opens the history and, except between lots, begins the run of the lot; returns the state that the run takes
+    /// over.
     pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, PriorState)> {
         let mut store = Store::open(db)?;
         store.claim(context.is_simulated())?;
@@ -130,7 +131,7 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // A landed part gets its rows with `PartDone`, a broken promise with its alarm.
+            // `PartDone` brings the row of a landed part; the alarm about a broken promise brings its row.
             Event::State(_)
             | Event::Left(_)
             | Event::Landed(_)
@@ -199,7 +200,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Queues a calibration that this run takes over from the certificates of the plant.
+    /// Queues a calibration that this run has just taken over from the certificates of the plant.
     fn certified(
         &mut self,
         context: &LotContext,
@@ -209,7 +210,7 @@ impl Recorder {
         made_now.map_or(Ok(()), |it| self.calibrated(it, context))
     }
 
-    /// Queues the contents of the machine; called before each transaction and at the end of the run.
+    /// Queues the contents of the machine and the use counts, before each transaction and at the end of the run.
     fn queue_contents(&mut self) {
         if let Some((inside, uses)) = self.contents.take() {
             self.rows.extend(self.journal.uses(uses));

@@ -98,7 +98,7 @@ fn begun(view: &mut View, context: &LotContext) {
     };
 }
 
-/// Shows the part judged last, with the counts.
+/// Shows the newly judged part, with the counts.
 fn judged(view: &mut View, lot: &LotProgress, judged: &Judged) {
     let verdicts = lot.counts.verdicts.iter();
     view.judged = lot.counts.parts();

@@ -24,7 +24,7 @@ pub struct Summary {
     pub pass: u64,
     /// Parts that failed.
     pub fail: u64,
-    /// Parts without a valid measurement.
+    /// Parts that could not be judged.
     pub void: u64,
     /// Parts of the lot that the beam of a bin has seen, by bin.
     pub bins: BTreeMap<String, u64>,

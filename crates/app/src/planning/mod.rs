@@ -19,16 +19,17 @@ use steps::Drafted;
 /// Answer to a planning question.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Planning {
-    /// An order exists.
+    /// A sequence of steps exists.
     Plan(Box<ToolingPlan>),
-    /// No order exists, because these elements lock each other. In a changeover they belong to one of its two scenes.
+    /// No sequence exists, because these elements lock each other. In a changeover they belong to one of the two
+    /// scenes.
     Locked(LockedRow),
 }
 
 /// Returns the interference table of a scene, a row per element and direction.
 ///
 /// # Errors
-/// Fails when the collision core cannot decide a way.
+/// Fails when the collision core cannot decide whether a way is clear.
 pub fn interference(scene: &PlanScene) -> anyhow::Result<Vec<BlockersRow>> {
     let assembly = &scene.assembly;
     let tables = [
@@ -39,7 +40,7 @@ pub fn interference(scene: &PlanScene) -> anyhow::Result<Vec<BlockersRow>> {
     Ok(rows::blockers(assembly, tables))
 }
 
-/// Plans the disassembly of a scene, or with [`PlanAction::Add`] its assembly: the reverse.
+/// Plans the disassembly of a scene, or with [`PlanAction::Add`] its assembly, which is the reverse.
 ///
 /// # Errors
 /// Fails when `demands` contradict each other, or when the collision core refuses a step.

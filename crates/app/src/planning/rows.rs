@@ -21,7 +21,7 @@ pub struct BlockersRow {
     pub boxes: Vec<String>,
 }
 
-/// A locked set.
+/// A set of elements that lock each other.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LockedRow {
     /// Ids of the elements that lock each other.
@@ -119,7 +119,7 @@ impl BlockersRow {
 }
 
 impl LockedRow {
-    /// Returns the set as lines: the set, then what holds each of its elements.
+    /// Returns lines of text: the set, then for each of its elements what holds the element.
     pub fn say(&self, lang: Lang) -> Vec<String> {
         let set = Message::new("plan", "locked")
             .with("elements", self.locked.join(lang.comma()))

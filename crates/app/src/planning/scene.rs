@@ -118,7 +118,7 @@ fn elements(scene: &Scene) -> Vec<Element> {
     scene.elements.iter().map(element).collect()
 }
 
-/// Returns the pairs of elements on one actuator that overlap.
+/// Returns the pairs of overlapping elements that ride on the same actuator.
 fn joined(scene: &Scene) -> anyhow::Result<Vec<(usize, usize)>> {
     let depth_mm = Tolerance::default().contact_mm;
     let mut found = Vec::new();

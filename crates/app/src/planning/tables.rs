@@ -75,7 +75,7 @@ impl Tables {
         }
     }
 
-    /// Returns the axis along which an element that rides on `actuator` moves, 0 to 2; `None` for a slanted one.
+    /// Returns the axis along which `actuator` moves, 0 to 2 for x to z; `None` for a slanted stroke.
     pub(super) fn axis(&self, actuator: &str) -> Option<usize> {
         let table = self.actuator.iter().find(|it| it.id == actuator)?;
         let moves = |axis: &usize| table.axis[*axis] != 0.0;

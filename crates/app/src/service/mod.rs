@@ -53,7 +53,7 @@ use tokio::sync::mpsc;
 /// An admitted lot with its recipe.
 type AdmittedLot = (LotOrder, Arc<Recipe>);
 
-/// A rig that this program controls for the day: everything that stays from lot to lot.
+/// A rig that this program controls for the day: everything that outlives a lot.
 pub struct Service {
     files: Files,
     plant: Arc<Plant>,
@@ -256,7 +256,7 @@ fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::
     })
 }
 
-/// Returns the order of the run between lots; it names the first recipe, which gives the size of a part found inside.
+/// Returns the order of the run between lots, with the first recipe, which gives the size of a part found inside.
 fn between(config: &Folder) -> anyhow::Result<LotOrder> {
     let Some(recipe) = recipe_names(config).into_iter().next() else {
         bail!(

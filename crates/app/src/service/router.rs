@@ -2,8 +2,8 @@
 //!
 //! - `start` with a lot goes to the station once the lot is admitted. The station ends the present run when the machine
 //!   rests; the run of the new lot follows.
-//! - `hold_lot` and `close_lot` for the lot under way go to its station; `release_lot` and `reopen_lot` for it are
-//!   refused.
+//! - `hold_lot` and `close_lot` for the lot under way go to the station; the router refuses `release_lot` and
+//!   `reopen_lot` for this lot.
 //! - The router writes these four orders for any other lot, and `replaced`, into the history.
 //! - Every other order goes straight to the station.
 //!
@@ -48,7 +48,7 @@ struct RouterState {
     plant: Arc<Plant>,
     source: RigSource,
     run: Mutex<ActiveRun>,
-    /// Lock that a task holds while it handles an order about lots, so that these orders are handled one after another.
+    /// Lock that a task holds while it handles an order about lots: only one such order is handled at a time.
     turn: tokio::sync::Mutex<()>,
 }
 
@@ -122,7 +122,7 @@ impl OrderRouter {
     }
 
     /// Notes what follows the run; fails while an earlier note is pending. The caller notes this before it passes the
-    /// order on, because the station ends the run at once.
+    /// order on, because the station may end the run as soon as it has the order.
     fn set_next(&self, next: Option<AfterRun>) -> Result<(), Message> {
         let mut run = self.run();
         if run.next.is_some() {

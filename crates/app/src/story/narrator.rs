@@ -48,7 +48,7 @@ pub struct Narrator {
     /// Rig time of the first action of the script or the first alarm, from which the account counts seconds; `None`
     /// before both.
     zero: Option<RigTime>,
-    /// Each part that is judged, by ordinal.
+    /// Each judged part, by ordinal.
     parts: BTreeMap<u64, Told>,
     explained: BTreeSet<AlarmCode>,
     /// Alarms whose cause is present.

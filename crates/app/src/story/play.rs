@@ -53,7 +53,7 @@ struct Observed {
 }
 
 impl Player {
-    /// Prepares a script; writes every action of an output to `journal`, if given.
+    /// Prepares a script; the player writes the rig's journal to `journal`, if given.
     pub fn new(script: Script, journal: Option<File>) -> Self {
         Self { script, journal }
     }
