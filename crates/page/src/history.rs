@@ -3,8 +3,9 @@
 //! `api.rs` lists the routes and their members; `members.rs` has the parts of the query strings.
 //!
 //! `lang` is `zh` or `en`; when absent, the header `Accept-Language` decides, and without that header the language is
-//! English. A route answers 400 to a member that it does not use, with the name of the member, and 404 to an unknown
-//! lot, run or part. At most four readers at a time work on blocking threads; they do not delay the writer.
+//! English. A route answers 400 to a member that it does not use, with the name of the member, and 404 when it needs a
+//! lot, run or part that does not exist. At most four readers at a time work on blocking threads; they do not delay the
+//! writer.
 
 pub(super) mod compared;
 pub(super) mod export;

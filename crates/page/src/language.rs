@@ -17,7 +17,8 @@ impl Preferred {
         asked.unwrap_or(self.0)
     }
 
-    /// Returns the first language of the list with the greatest weight (`q`, 1 when absent); ignores other languages.
+    /// Returns the first language of the list with the greatest weight (`q`, 1 when absent); ignores all languages but
+    /// English and Chinese.
     fn of(header: &str) -> Self {
         let mut best = (Lang::En, 0.0);
         for entry in header.split(',') {

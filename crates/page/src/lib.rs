@@ -85,13 +85,13 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 
-/// Time that open connections get to finish when the program ends.
+/// Time for which open connections may finish when the program ends.
 pub const GRACE: Duration = Duration::from_secs(1);
 
 /// Links between the server and the rest of the program.
 #[derive(Debug, Clone)]
 pub struct Shared {
-    /// The latest view; after its sender is dropped, beats say that the controller has ended.
+    /// The latest view; once its sender is gone, beats say that the controller has ended.
     pub view: watch::Receiver<machine::view::View>,
     /// The history file, which may not exist yet.
     pub db: PathBuf,

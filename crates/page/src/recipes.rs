@@ -38,7 +38,7 @@ pub(super) struct ListedRecipe {
     saved_at_us: Option<i64>,
     /// False while the plant requires an approval that the newest revision lacks.
     approved: bool,
-    /// Error that keeps the recipe from loading; absent for a good recipe.
+    /// Error that keeps the recipe from loading; null for a good recipe.
     trouble: Option<String>,
 }
 

@@ -90,7 +90,7 @@ impl<'a> LotProgress<'a> {
         self.counts.per_hour(now.since(began).as_seconds())
     }
 
-    /// Returns the rig time of the last landing; before the first landing, of the begin of the lot; before the lot,
+    /// Returns the rig time of the last landing; before the first landing, of the lot's beginning; before the lot,
     /// zero.
     pub fn end(&self) -> RigTime {
         self.last_landed.or(self.lot_began).unwrap_or_default()

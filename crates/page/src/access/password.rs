@@ -29,7 +29,8 @@ pub(super) fn hash(password: &str) -> Result<String> {
     Ok(hash.to_string())
 }
 
-/// Checks `password` against the Argon2id string `kept`; takes as long as [`hash`].
+/// Checks `password` against the Argon2id string `kept`; takes as long as [`hash`], but answers at once for a password
+/// that is too long.
 pub(super) fn matches(password: &str, kept: &str) -> Result<bool> {
     if password.chars().count() > MOST {
         return Ok(false);

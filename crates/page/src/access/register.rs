@@ -207,7 +207,7 @@ impl Register {
         }
     }
 
-    /// Changes the password and ends the person's sessions. Fails for an unknown name.
+    /// Changes the password and ends the person's sessions. Fails for an unknown name and a wrong length.
     pub fn set_password(&mut self, name: &str, password: &str) -> Result<()> {
         const DOING: &str = "changing a password";
         let hash = password::hash(password)?;

@@ -12,9 +12,10 @@ use utoipa::ToSchema;
 pub enum Role {
     /// Runs lots, gives every PackML command, acknowledges alarms.
     Operator,
-    /// Also jogs and steps actuators, changes the mode, shelves alarms, releases held lots and resets wear counters.
+    /// Also jogs and steps actuators, changes the mode, shelves alarms, releases held lots, resets wear counters, and
+    /// carries out plans for tooling.
     Maintainer,
-    /// Also changes recipes and people, and reopens complete lots.
+    /// Also changes and approves recipes, changes people, and reopens complete lots.
     Engineer,
 }
 

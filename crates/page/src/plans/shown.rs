@@ -44,7 +44,7 @@ pub struct ListedScene {
 pub struct PlanQuestion {
     /// Kind of the plan.
     pub kind: PlanKind,
-    /// Scene that the plan begins with.
+    /// Scene with which the plan begins.
     #[schema(example = "scene.toml")]
     pub scene: String,
     /// Scene to which a changeover leads.
@@ -71,7 +71,7 @@ pub enum PlanAnswer {
 #[derive(Debug, Serialize, ToSchema)]
 pub(crate) struct ShownPlan {
     kind: PlanKind,
-    /// Scene that the plan begins with.
+    /// Scene with which the plan begins.
     scene: String,
     /// Scene to which a changeover leads.
     to: Option<String>,
@@ -79,7 +79,7 @@ pub(crate) struct ShownPlan {
     remove: Vec<String>,
     /// What a changeover does with each element.
     summary: Option<ChangeoverRow>,
-    /// SVG with all bodies, to which the pictures refer; it must be in the same document.
+    /// SVG with all bodies, to which the pictures refer; must be in the same document as the pictures.
     shapes: String,
     steps: Vec<ShownStep>,
 }

@@ -24,12 +24,13 @@ pub enum Login<T = (Person, String)> {
         /// True when a person has this name; for the audit, not for the client.
         known: bool,
     },
-    /// The register checked no password, because too many were wrong before. Holds the time until the next attempt.
+    /// The register checked no password, because too many were wrong before. Holds the time until the next attempt may
+    /// come.
     Wait(Duration),
 }
 
 impl Register {
-    /// Checks a password: counts a wrong one, and clears the failures of the name after a right one.
+    /// Checks a password: counts a wrong password, and clears the failures of the name after a right one.
     pub fn prove(&mut self, name: &str, password: &str, now_us: i64) -> Result<Login<Person>> {
         if let Some(wait) = self.wait(name, now_us)? {
             return Ok(Login::Wait(wait));
@@ -57,7 +58,7 @@ impl Register {
         }
     }
 
-    /// Checks `typed` against the set-up code; counts a wrong one like a wrong password. Once there is an engineer,
+    /// Checks `typed` against the set-up code; counts a wrong code like a wrong password. Once there is an engineer,
     /// every code is wrong.
     pub fn prove_code(
         &mut self,
@@ -87,7 +88,7 @@ impl Register {
         })
     }
 
-    /// Opens a session of a person; returns its token.
+    /// Opens a session of a person; returns the token of the session.
     pub fn open_session(&mut self, name: &str, now_us: i64) -> Result<String> {
         const DOING: &str = "opening a session";
         let token = password::random_hex(32)?;
