@@ -87,7 +87,7 @@ pub enum Command {
     Run(Box<run::RunArgs>),
     /// Calibrate a rig by its standards and reference parts, or verify its calibration
     Calibrate(calibrate::CalibrateArgs),
-    /// How a chamber answers its heater, and settings of its controller
+    /// Measure how a chamber answers its heater, or find settings of its controller
     Chamber(experiment::ChamberArgs),
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
@@ -113,7 +113,7 @@ pub enum Command {
     Instrument(instrument::InstrumentArgs),
     /// Tell whether moves in a scene collide; needs no rig
     Check(check::CheckArgs),
-    /// What blocks the elements of a scene, and in which order they come off and go on, no rig
+    /// What blocks the elements of a scene, and in which order they come off and go on; needs no rig
     Plan(plan::PlanArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),

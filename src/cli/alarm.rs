@@ -65,7 +65,7 @@ enum Action {
     },
 }
 
-/// Runs the command.
+/// Runs `relayrig alarm`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db)?;
     let (order, by) = match &args.action {

@@ -34,7 +34,7 @@ pub struct CalibrateArgs {
     pub json: bool,
 }
 
-/// Runs the command.
+/// Runs `relayrig calibrate`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &CalibrateArgs) -> anyhow::Result<Exit> {
     let source = args.rig.source(None)?;
     let what = (args.recipe.as_str(), args.verify);

@@ -56,7 +56,7 @@ pub enum DemoPace {
     Real,
 }
 
-/// Runs the command.
+/// Runs `relayrig demo`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
     let rig = RigArgs {
         sim: true,

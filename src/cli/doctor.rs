@@ -34,7 +34,7 @@ pub struct DoctorArgs {
     pub json: bool,
 }
 
-/// Runs the command.
+/// Runs `relayrig doctor`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &DoctorArgs) -> anyhow::Result<Exit> {
     let lines: Vec<LinePort> = args.line.iter().map(port).collect::<anyhow::Result<_>>()?;
     let is_installed = files.db == Path::new(installed::HISTORY);

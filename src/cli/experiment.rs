@@ -49,7 +49,7 @@ pub enum What {
     Tune,
 }
 
-/// Runs the command.
+/// Runs `relayrig chamber`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &ChamberArgs) -> anyhow::Result<Exit> {
     let source = args.rig.source(None)?;
     let what = match args.what {

@@ -59,7 +59,7 @@ Exit status: 0 ended, 2 bad input. Without the database the page says why, and g
     Check(check::CheckArgs),
 }
 
-/// Runs the command.
+/// Runs `relayrig fleet`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &FleetArgs) -> anyhow::Result<Exit> {
     let fleet = load_fleet(&files.config)?;
     let targets = chosen(files, &fleet, args.target.as_deref())?;

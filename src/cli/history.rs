@@ -148,7 +148,7 @@ enum Command {
     Check,
 }
 
-/// Runs the command on the history. An error is bad input: exit status 2.
+/// Runs `relayrig history`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: HistoryArgs) -> anyhow::Result<Exit> {
     let done = dispatch(files, &args.from, *args.command).map_err(by_option);
     super::unless_pipe_closed(done, Exit::Done)

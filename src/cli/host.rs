@@ -49,7 +49,7 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
-/// Runs the command.
+/// Runs `relayrig host check`.
 ///
 /// # Errors
 /// Fails on a bad configuration, or when the folder of the history or `--plot` cannot be written.

@@ -148,7 +148,7 @@ impl Place {
     }
 }
 
-/// Runs the command with the profiles in `folder`.
+/// Runs `relayrig instrument` with the profiles in `folder`.
 pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()

@@ -1,6 +1,6 @@
 //! `relayrig lot`: shows the state of a lot; holds, releases, closes or reopens it.
 //!
-//! A decision is an order like those of a screen: the audit of orders records it with the name of the person who
+//! A decision is an order like one at a screen: the audit of orders records it with the name of the person who
 //! decides.
 
 use super::person;
@@ -73,7 +73,7 @@ struct Decided {
     reason: String,
 }
 
-/// Runs the command.
+/// Runs `relayrig lot`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
     match &args.action {
         Action::Show { lot, json } => show(&Archive::open(db)?, lot, *json)?,

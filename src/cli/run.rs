@@ -77,7 +77,7 @@ pub enum StudyArg {
     Grr,
 }
 
-/// Runs the command.
+/// Runs `relayrig run`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &RunArgs) -> anyhow::Result<Exit> {
     let source = args.rig.source(args.truth.clone())?;
     let order = LotOrder {

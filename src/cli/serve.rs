@@ -56,7 +56,7 @@ impl PageArgs {
     }
 }
 
-/// Runs the command, with `first` as its first lot.
+/// Runs `relayrig serve`, with `first` as its first lot.
 pub fn run(files: &Files, args: &ServeArgs, first: Option<LotOrder>) -> anyhow::Result<Exit> {
     let mut rig = args.rig.clone();
     if rig.speed.is_some() {

@@ -65,7 +65,7 @@ pub struct SimArgs {
     pub faults: bool,
 }
 
-/// Runs the command until it is interrupted.
+/// Runs `relayrig sim` until it is interrupted.
 pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
     let files = simulated::files(config);
     if let Some(file) = &args.instruments

@@ -45,7 +45,7 @@ pub struct StoryArgs {
     pub journal: Option<PathBuf>,
 }
 
-/// Runs the command.
+/// Runs `relayrig story`.
 ///
 /// # Errors
 /// Fails on bad input, such as a script with an unknown word.

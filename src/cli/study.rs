@@ -96,7 +96,7 @@ pub struct StudyArgs {
     pub rtol: Option<f64>,
 }
 
-/// Runs the command.
+/// Runs `relayrig study`.
 ///
 /// # Errors
 /// Fails on bad input, when a lot ends with bad input, or when an output cannot be written.

@@ -80,7 +80,7 @@ const COLUMNS: [Column<Entry>; 4] = [
     }),
 ];
 
-/// Runs the command.
+/// Runs `relayrig user`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
     let mut register = Register::open(&access_path(db))?;
     let now_us = jiff::Timestamp::now().as_microsecond();

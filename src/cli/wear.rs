@@ -42,7 +42,7 @@ enum Action {
     },
 }
 
-/// Runs the command.
+/// Runs `relayrig wear`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db)?;
     match &args.action {

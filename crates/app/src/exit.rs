@@ -2,7 +2,7 @@
 //!
 //! The station ends a run with `Ending::Alarm` when an alarm stops an unattended rig (`machine/src/station/safety.rs`),
 //! when the rig stays suspended for too long, or when a person stops a rig in trouble
-//! (`machine/src/station/states.rs`). The cycle ends a run with it when a module does not fit the wiring
+//! (`machine/src/station/states.rs`). The cycle ends a run in the same way when a module does not fit the wiring
 //! (`cycle/src/lib.rs`). The cause of exit status 3 is
 //!
 //! - chosen in `lot/progress.rs`: the first alarm of the last trouble, or `aborted` after an order; for a lost history

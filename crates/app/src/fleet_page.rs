@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch::{Sender, channel};
 
-/// Longest time for one SQL statement: the page waits longer for its answer.
+/// Longest time for one SQL statement, shorter than the time for which the page waits for an answer.
 const PATIENCE: Duration = Duration::from_secs(15);
 
 /// The page, ready to serve.

@@ -1,9 +1,9 @@
 //! Follows the live traffic of a running controller through its page. The controller keeps the port for itself, and the
 //! follower sends nothing to a module.
 //!
-//! The page's server keeps the last messages of every line (`/api/trace`). The follower polls them and reports the new
-//! ones, all lines merged in order of time, with a gap where more messages passed between two polls than the server
-//! keeps. The follower ends when the controller does.
+//! The page's server keeps the last messages of every line (`/api/trace`). The follower polls these messages and
+//! reports the new ones, all lines merged in order of time, with a gap where more messages passed between two polls
+//! than the server keeps. The follower ends when the controller does.
 
 use anyhow::{Context, anyhow, bail};
 use serde::Deserialize;
@@ -56,7 +56,7 @@ struct Line {
 pub struct Message {
     /// Instant of the message, microseconds of rig time.
     pub at_us: u64,
-    /// Direction as one character: sent, received or stray.
+    /// Direction as one character: `>` sent, `<` received, `~` stray.
     pub way: String,
     /// Bytes of the message, escaped.
     pub text: String,

@@ -29,7 +29,7 @@ const LATE_REPLY_MS: u64 = 180;
 
 /// Name of the code reader's line for `--line` and on the simulated rig.
 const READER: &str = "serial_reader";
-/// Number of readings that may wait for the cycle.
+/// Number of code readings that may wait for the cycle.
 const READINGS: usize = 16;
 
 /// Returns the code reader that gives this run its serial numbers; `None` for a run without a code reader.
@@ -58,7 +58,7 @@ pub struct Lines {
     pub logs: Vec<(String, LineLog)>,
     /// Traffic and health of each instrument.
     pub(super) instrument_logs: Vec<InstrumentLog>,
-    /// The simulated rig behind the lines; `None` on a real one.
+    /// The simulated rig behind the lines; `None` on a real rig.
     #[cfg(feature = "sim")]
     rig: Option<SharedRig>,
     #[cfg(feature = "sim")]

@@ -26,7 +26,8 @@ pub struct StopSignals {
 }
 
 impl StopSignals {
-    /// Starts to listen, also outside a runtime; the first signal sets the first flag, the second one the second.
+    /// Starts to listen, also outside a runtime; the first signal sets the first flag, the second signal the second
+    /// flag.
     ///
     /// # Errors
     /// Fails when the operating system refuses the handlers or the thread.

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
-/// Arguments by name. For some names the value is a code, of which the text shows the name.
+/// Arguments by name. For some names the value is a code; the text then shows the name of this code.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(transparent)]
 pub struct Args(BTreeMap<Cow<'static, str>, String>);

@@ -10,7 +10,7 @@ use serde_json::json;
 use texts::Lang;
 use tokio_serial::SerialStream;
 
-/// One command.
+/// A command to send, and how to send it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig bus send --port /dev/ttyUSB0 --baud 9600 '$01M'

@@ -19,7 +19,7 @@ pub struct RestoreArgs {
     replace: bool,
 }
 
-/// Runs the command; a fault that the check of the backup finds gives exit status 1, not an error.
+/// Runs `relayrig history restore`; a fault that the check of the backup finds gives exit status 1, not an error.
 pub fn run(files: &Files, args: &RestoreArgs) -> anyhow::Result<Exit> {
     let backup = Contents::find(&args.backup)?;
     let mut out = Output::stdout();

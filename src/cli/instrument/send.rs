@@ -11,7 +11,7 @@ use config::Folder;
 use scpi::{ErrorEntry, Failure, Form, Raw, ReplyError, number, string};
 use serde_json::json;
 
-/// One command.
+/// A command to send, and how to send it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig instrument send --link tcp:192.168.1.20:5025 '*IDN?'

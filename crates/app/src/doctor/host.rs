@@ -36,7 +36,7 @@ struct Privileges {
     of: &'static str,
     /// Highest real-time priority, 0 for none.
     priority: u64,
-    /// Most memory that the program may lock, bytes; the program locks no memory unless this is `u64::MAX`, no limit.
+    /// Most memory that the program may lock, bytes, `u64::MAX` for no limit; with a limit the program locks no memory.
     locked: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Checks serial ports. Opens none of them, because that would change control lines of a running rig.
+//! Checks serial ports. Opens none of them, because opening would change control lines of a running rig.
 
 use super::account::{Account, group, rights};
 use super::finding::{Check, Finding, Subject};

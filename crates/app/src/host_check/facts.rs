@@ -26,7 +26,7 @@ pub struct Facts {
     pub cpu_time: CpuTime,
 }
 
-/// Places in the kernel where a thread of higher priority may interrupt it.
+/// Places in the kernel where a thread of higher priority may interrupt the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Preemption {
     /// Nearly everywhere (PREEMPT_RT).

@@ -229,7 +229,7 @@ impl Stream<'_, '_> {
         }
     }
 
-    /// Publishes `ordinal` as that of the last part on the disk, and ends an outage.
+    /// Publishes `ordinal`, the number of the last part on the disk, and ends an outage.
     fn written(&self, outage: &mut Option<Outage>, ordinal: u64, recorded: &AtomicU64) {
         recorded.fetch_max(ordinal, Ordering::AcqRel);
         if outage.take().is_some() {

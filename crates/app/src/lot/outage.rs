@@ -56,7 +56,7 @@ pub(crate) struct HistoryRetry<'a> {
     pub controls: &'a Controls,
     /// Clock of the rig.
     pub pace: Pace,
-    /// Longest outage, s.
+    /// Longest outage before the run gives up, s.
     pub give_up_s: f64,
 }
 

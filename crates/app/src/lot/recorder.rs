@@ -131,7 +131,7 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // `PartDone` brings the row of a landed part; the alarm about a broken promise brings its row.
+            // `PartDone` brings the row of a landed part, an alarm the row of a broken promise.
             Event::State(_)
             | Event::Left(_)
             | Event::Landed(_)

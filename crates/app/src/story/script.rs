@@ -58,7 +58,7 @@ pub enum Awaited {
     Judged(u64),
     /// The part of the lot with this number has left the nest.
     Left(u64),
-    /// The beam of its bin has seen the part of the lot with this number.
+    /// The beam of a bin has seen the part of the lot with this number.
     Landed(u64),
 }
 

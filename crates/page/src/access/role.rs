@@ -40,7 +40,7 @@ impl fmt::Display for Role {
     }
 }
 
-/// Error of a word that names no role.
+/// Error: the word names no role.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0:?}: expected operator, maintainer or engineer")]
 pub struct NoRole(String);

@@ -100,7 +100,7 @@ async fn a_session_keeps_its_connection_under_a_flood() {
     until(&mut screen, "\"lot\":\"after\"").await;
 }
 
-/// Reads until `expected` has come.
+/// Reads from `stream` until `expected` has come.
 async fn until(stream: &mut TcpStream, expected: &str) {
     let mut seen = String::new();
     while !seen.contains(expected) {

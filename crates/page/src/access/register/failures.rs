@@ -19,7 +19,7 @@ const PER_NAME: i64 = 5;
 const IN_ALL: i64 = 30;
 
 impl Register {
-    /// Returns the time until a login as `name` may be tried again; `None` when it may be tried now.
+    /// Returns the time for which a login as `name` must wait; `None` when it need not wait.
     pub(super) fn wait(&self, name: &str, now_us: i64) -> Result<Option<Duration>> {
         let own = self.binding(&digest(name), PER_NAME, now_us)?;
         let all = self.binding("%", IN_ALL, now_us)?;

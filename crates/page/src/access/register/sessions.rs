@@ -11,7 +11,7 @@ use std::time::Duration;
 const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
                       zY2ZxH5hG1m3pV0Q3mCkGd5dTn0l2yq0hXo1m3u9m6E";
 
-/// Name under which wrong set-up codes count; no person can have it.
+/// Name under which wrong set-up codes count; no person can have this name.
 const SETUP: &str = "set-up code";
 
 /// Outcome of an attempt to log in, or to prove one's password.
