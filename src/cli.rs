@@ -67,7 +67,7 @@ pub struct Cli {
     #[arg(long, global = true, value_name = "FILE")]
     pub db: Option<PathBuf>,
     /// Log on stderr: off, error, warn, info, debug, trace, or a filter per module (warn,app=debug); the word json,
-    /// alone or beside a filter, makes it JSON lines [default: RUST_LOG, else info]
+    /// alone or beside a filter, turns the log into JSON lines [default: RUST_LOG, else info]
     #[arg(long, global = true, value_name = "FILTER")]
     pub log: Option<String>,
     /// What to do
@@ -87,7 +87,7 @@ pub enum Command {
     Run(Box<run::RunArgs>),
     /// Calibrate a rig by its standards and reference parts, or verify its calibration
     Calibrate(calibrate::CalibrateArgs),
-    /// How a chamber answers its heater, and settings of its controller
+    /// Measure how a chamber answers its heater, or find settings of its controller
     Chamber(experiment::ChamberArgs),
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
@@ -113,14 +113,14 @@ pub enum Command {
     Instrument(instrument::InstrumentArgs),
     /// Tell whether moves in a scene collide; needs no rig
     Check(check::CheckArgs),
-    /// What blocks the elements of a scene, and in which order they come off and go on, no rig
+    /// What blocks the elements of a scene, and in which order they come off and go on; needs no rig
     Plan(plan::PlanArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
     /// PostgreSQL behind the histories of many rigs
     #[cfg(feature = "fleet")]
     Fleet(fleet::FleetArgs),
-    /// Unacknowledged alarms; acknowledge or shelve them
+    /// List, acknowledge or shelve the unacknowledged alarms
     Alarm(alarm::AlarmArgs),
     /// State of a lot; hold, release, close or reopen it
     Lot(lot::LotArgs),
@@ -135,7 +135,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the default history file of a command that does not use that of the rig; `None` for every other command.
+    /// Returns the default history file of a command that has a history of its own; `None` for every other command.
     const fn own_history(&self) -> Option<&'static str> {
         match self {
             #[cfg(feature = "sim")]
@@ -147,7 +147,7 @@ impl Command {
     }
 
     /// Returns the built-in configuration for a command that uses it by default; `None` for every other command. A demo
-    /// does not read the directory `config`, so that it is the same everywhere.
+    /// does not read the directory `config`, so that the demo is the same everywhere.
     fn own_config(&self) -> Option<Folder> {
         match self {
             #[cfg(feature = "sim")]
@@ -234,7 +234,8 @@ fn password_of(who: &str) -> anyhow::Result<String> {
     Ok(line.trim_end_matches(['\r', '\n']).to_owned())
 }
 
-/// Returns `done`, but `closed` when `done` is the error of a closed pipe, which is a normal end.
+/// Returns `closed` when `done` is the error of a closed pipe, which is a normal end; returns any other `done`
+/// unchanged.
 fn unless_pipe_closed<T>(done: anyhow::Result<T>, closed: T) -> anyhow::Result<T> {
     let left = |cause: &(dyn std::error::Error + 'static)| {
         cause

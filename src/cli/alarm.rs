@@ -1,6 +1,6 @@
 //! `relayrig alarm`: unacknowledged alarms of runs that have ended.
 //!
-//! A running controller does not read these changes: use its page or `POST /api/orders` instead.
+//! A running controller does not see these changes: use its page or `POST /api/orders` instead.
 
 use super::output::Output;
 use super::person;
@@ -40,9 +40,9 @@ enum Action {
     /// Acknowledge an alarm, or all of them
     #[command(after_help = "Example: relayrig alarm acknowledge door_open --by li")]
     Acknowledge {
-        /// Code of the alarm; without it every alarm
+        /// Code of the alarm; when absent, every alarm
         code: Option<String>,
-        /// Person who acknowledges it
+        /// Person who acknowledges the alarm
         #[arg(long, value_name = "NAME")]
         by: String,
     },
@@ -53,10 +53,10 @@ enum Action {
     Shelve {
         /// Code of the alarm
         code: String,
-        /// Minutes, 1 to 480
+        /// Minutes for which the alarm is hidden, 1 to 480
         #[arg(long, value_name = "N", default_value_t = 30)]
         minutes: u32,
-        /// Person who shelves it
+        /// Person who shelves the alarm
         #[arg(long, value_name = "NAME")]
         by: String,
         /// Reason
@@ -65,7 +65,7 @@ enum Action {
     },
 }
 
-/// Runs the command.
+/// Runs `relayrig alarm`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db)?;
     let (order, by) = match &args.action {

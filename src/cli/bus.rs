@@ -1,4 +1,4 @@
-//! `relayrig bus`: finds modules, sends one command, watches a line. It needs no rig file.
+//! `relayrig bus`: finds modules, sends one command, watches a line; needs no configuration.
 
 mod found;
 mod monitor;
@@ -56,7 +56,7 @@ impl PortArgs {
     }
 }
 
-/// Runs the command.
+/// Runs `relayrig bus`; an error is bad input (exit status 2).
 pub fn run(args: &BusArgs) -> anyhow::Result<Exit> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()

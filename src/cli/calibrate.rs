@@ -1,4 +1,4 @@
-//! `relayrig calibrate`: the factors of a rig from its standards and reference parts, or their verification.
+//! `relayrig calibrate`: determines or verifies the factors of a rig by its standards and reference parts.
 
 use super::output::Output;
 use super::rig::RigArgs;
@@ -26,7 +26,7 @@ pub struct CalibrateArgs {
     /// Measure again and compare with the stored calibration
     #[arg(long)]
     pub verify: bool,
-    /// Recipe in config/recipes whose coil voltage chooses the reference parts
+    /// Recipe in config/recipes; its coil voltage selects the reference parts
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     pub recipe: String,
     /// One JSON object per factor, then a summary
@@ -34,7 +34,7 @@ pub struct CalibrateArgs {
     pub json: bool,
 }
 
-/// Runs the command.
+/// Runs `relayrig calibrate`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &CalibrateArgs) -> anyhow::Result<Exit> {
     let source = args.rig.source(None)?;
     let what = (args.recipe.as_str(), args.verify);

@@ -17,7 +17,7 @@ pub struct CardArgs {
     paper: PaperArgs,
 }
 
-/// Runs the command.
+/// Runs `relayrig card`.
 ///
 /// # Errors
 /// Fails when the configuration is faulty or the file cannot be written.

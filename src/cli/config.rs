@@ -44,7 +44,7 @@ Lots need it where rig.toml has [recipes] approval = \"second_person\"."
     Approve {
         /// Name of the recipe
         recipe: String,
-        /// Engineer who approves it
+        /// Engineer who approves the revision
         #[arg(long, value_name = "NAME")]
         by: String,
     },
@@ -64,10 +64,10 @@ Lots need it where rig.toml has [recipes] approval = \"second_person\"."
 pub struct Revised {
     /// Name of the recipe
     recipe: String,
-    /// Path of a key and its new value; without a value the key is left out
+    /// Path of a key and its new value; an empty value removes the key
     #[arg(required_unless_present = "save_as", value_name = "KEY=VALUE", value_parser = key_value)]
     values: Vec<(String, Value)>,
-    /// Person who revises it
+    /// Person who revises the recipe
     #[arg(long, value_name = "NAME")]
     by: String,
     /// Why the values change
@@ -126,7 +126,7 @@ pub fn run(folder: &Folder, db: &Path, args: &Args) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Opens the audit of orders, saves a revision or a new recipe, and writes it or its refusal into the audit.
+/// Opens the audit of orders, saves a revision or a new recipe, and writes the change or its refusal into the audit.
 fn revise(folder: &Folder, db: &Path, it: &Revised) -> anyhow::Result<String> {
     let by = person(&it.by)?;
     let change = Change {

@@ -1,5 +1,5 @@
-//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once. It needs no preparation: it
-//! brings its own configuration and has its own history.
+//! `relayrig demo`: [`serve`] on the simulated rig, with a first lot that starts at once. A demo needs no preparation:
+//! it brings its own configuration and has its own history.
 
 use super::rig::{self, PaceArg, RigArgs};
 use super::serve::{self, PageArgs, ServeArgs};
@@ -23,7 +23,8 @@ pub struct DemoArgs {
     /// Rig to simulate, of those inside the program
     #[arg(long, value_name = "NAME", default_value = "jzc-22f", value_parser = rig::built_in(), conflicts_with = "config")]
     pub rig: String,
-    /// Recipe of the lot [default: jzc-22f-012, ssr-dc-60v-3a or thermostat-ksd9700 where the rig has it, else its first one]
+    /// Recipe of the lot [default: jzc-22f-012, ssr-dc-60v-3a or thermostat-ksd9700 where the rig has it, else its
+    /// first one]
     #[arg(long, value_name = "NAME")]
     pub recipe: Option<String>,
     /// Where the page listens.
@@ -41,7 +42,7 @@ pub struct DemoArgs {
     /// Seed of rig and lot
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Parts of the lot; without it the lot goes on until it is stopped
+    /// Number of parts in the lot; when absent, the lot goes on until it is stopped
     #[arg(long, value_name = "N")]
     pub count: Option<u64>,
 }
@@ -55,7 +56,7 @@ pub enum DemoPace {
     Real,
 }
 
-/// Runs the command.
+/// Runs `relayrig demo`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
     let rig = RigArgs {
         sim: true,

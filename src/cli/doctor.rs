@@ -10,7 +10,7 @@ use app::source::LinePort;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Looks at an installation.
+/// Examines an installation.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig doctor
@@ -34,7 +34,7 @@ pub struct DoctorArgs {
     pub json: bool,
 }
 
-/// Runs the command.
+/// Runs `relayrig doctor`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &DoctorArgs) -> anyhow::Result<Exit> {
     let lines: Vec<LinePort> = args.line.iter().map(port).collect::<anyhow::Result<_>>()?;
     let is_installed = files.db == Path::new(installed::HISTORY);

@@ -12,7 +12,7 @@ use serde_json::json;
 /// Coverage factor of the printed uncertainty.
 const K: f64 = 2.0;
 
-/// Finds how a chamber answers its heater.
+/// Measures the response of a chamber to its heater.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   relayrig --config config/rigs/thermostat chamber identify --sim
@@ -31,8 +31,8 @@ pub struct ChamberArgs {
     /// The rig of the chamber.
     #[command(flatten)]
     pub rig: RigArgs,
-    /// Recipe in config/recipes whose limits give the range of temperatures [default: thermostat-ksd9700 where the rig has
-    /// it, else its first one]
+    /// Recipe in config/recipes whose limits give the range of temperatures [default: thermostat-ksd9700 where the rig
+    /// has it, else its first one]
     #[arg(long, value_name = "NAME")]
     pub recipe: Option<String>,
     /// One JSON object per figure
@@ -40,16 +40,16 @@ pub struct ChamberArgs {
     pub json: bool,
 }
 
-/// What to find.
+/// Result of the experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum What {
     /// Response of the air to a step of the heater
     Identify,
-    /// The same, then settings of the controller from an oscillation (relay auto-tune)
+    /// Response to a step, then settings of the controller from an oscillation (relay auto-tune)
     Tune,
 }
 
-/// Runs the command.
+/// Runs `relayrig chamber`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &ChamberArgs) -> anyhow::Result<Exit> {
     let source = args.rig.source(None)?;
     let what = match args.what {

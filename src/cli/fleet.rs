@@ -59,7 +59,7 @@ Exit status: 0 ended, 2 bad input. Without the database the page says why, and g
     Check(check::CheckArgs),
 }
 
-/// Runs the command.
+/// Runs `relayrig fleet`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &FleetArgs) -> anyhow::Result<Exit> {
     let fleet = load_fleet(&files.config)?;
     let targets = chosen(files, &fleet, args.target.as_deref())?;
@@ -74,7 +74,8 @@ pub fn run(files: &Files, args: &FleetArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Returns the databases that the command is for.
+/// Returns the databases of `fleet.toml`, or only the one with `url`. Fails without a database, or for an unknown
+/// `url`.
 fn chosen(
     files: &Files,
     fleet: &FleetSettings,

@@ -79,7 +79,7 @@ enum Command {
     #[command(after_help = "Examples:\n  relayrig history pareto --lot A\n  \
         relayrig history pareto --alarms --since -7d")]
     Pareto(pareto::ParetoArgs),
-    /// Yield and output by shift, of the last seven days without --since; the shifts are those of fleet.toml
+    /// Yield and output by shift, with the shifts of fleet.toml; without --since, of the last seven days
     #[command(after_help = "Examples:\n  relayrig history shifts --since -30d\n  \
         relayrig history shifts --from postgres://office@db/relayrig --site suzhou")]
     Shifts(shifts::ShiftsArgs),
@@ -148,13 +148,13 @@ enum Command {
     Check,
 }
 
-/// Runs the command on the history. An error is bad input: exit status 2.
+/// Runs `relayrig history`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: HistoryArgs) -> anyhow::Result<Exit> {
     let done = dispatch(files, &args.from, *args.command).map_err(by_option);
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Names the command line option in an error that names a member of the filter; lots to compare have no option.
+/// Replaces the member of the filter that an error names by its command line option; lots to compare have no option.
 fn by_option(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref::<InquiryError>() {
         Some(InquiryError::Member {
@@ -200,7 +200,8 @@ fn dispatch(files: &Files, from: &from::FromArgs, command: Command) -> anyhow::R
 }
 
 impl Command {
-    /// Returns the name of a command that works on the file of a rig alone.
+    /// Returns the name of a command that works only on the history file of a rig; `None` for a command that also takes
+    /// a database.
     const fn of_file(&self) -> Option<&'static str> {
         match self {
             Self::Import(_) => Some("import"),

@@ -1,6 +1,6 @@
 //! `relayrig host check`: tests whether this computer keeps the timing of the rig.
 //!
-//! Exit status: 0 it does, 1 it does not, 2 bad input, 4 stopped by Ctrl-C.
+//! Exit status: 0 yes, 1 no, 2 bad input, 4 stopped by Ctrl-C.
 
 use super::output::{Output, typed};
 use super::table::lateness_line;
@@ -21,7 +21,7 @@ use units::Span;
 /// Tests this computer.
 #[derive(Debug, Clone, clap::Subcommand)]
 pub enum Args {
-    /// How late this computer wakes the rig, as it is and under load, against what rig.toml tolerates
+    /// Measure how late this computer wakes the rig, as it is and under load, and compare with rig.toml
     Check(CheckArgs),
 }
 
@@ -49,7 +49,7 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
-/// Runs the command.
+/// Runs `relayrig host check`.
 ///
 /// # Errors
 /// Fails on a bad configuration, or when the folder of the history or `--plot` cannot be written.

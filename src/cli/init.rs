@@ -24,7 +24,7 @@ pub struct InitArgs {
     pub rig: String,
 }
 
-/// Runs the command and prints what to do next.
+/// Runs `relayrig init` and prints what to do next.
 ///
 /// # Errors
 /// Fails when the directory is not empty or cannot be written.

@@ -53,16 +53,17 @@ struct LinkArgs {
     /// tcp:HOST:PORT, serial:PATH:BAUD, gpib-tcp:HOST:PORT:ADDR or gpib-serial:PATH:BAUD:ADDR
     #[arg(long, value_name = "LINK", required_unless_present = "instrument")]
     link: Option<LinkAddress>,
-    /// Instrument of rig.toml, whose link and profile serve unless --link or --profile is given
+    /// Instrument of rig.toml; its link and profile apply unless --link or --profile is given
     #[arg(long, value_name = "NAME")]
     instrument: Option<String>,
-    /// Longest wait for a reply, milliseconds; without it that of the profile, or 1000
+    /// Longest wait for a reply, milliseconds [default: that of the profile, else 1000]
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=60_000))]
     timeout: Option<u64>,
 }
 
 impl LinkArgs {
-    /// Returns where the instrument is, and its profile, if the arguments name one: `profile`, or that of rig.toml.
+    /// Returns the place of the instrument, and its profile: the one named `profile`, or else that of --instrument in
+    /// rig.toml, if any.
     fn place(
         &self,
         folder: &Folder,
@@ -108,7 +109,7 @@ fn wired(folder: &Folder, name: &str) -> anyhow::Result<InstrumentWiring> {
 #[derive(Debug, Clone)]
 struct Place {
     link: LinkAddress,
-    /// Milliseconds until a reply, in place of those of the profile.
+    /// Longest wait for a reply, ms; overrides the profile.
     timeout: Option<u64>,
 }
 
@@ -121,7 +122,7 @@ impl Place {
         }
     }
 
-    /// Returns a link with the settings of `profile`; without one, with default settings that suit most instruments.
+    /// Returns a link with the settings of `profile`; for `None`, with default settings that suit most instruments.
     fn link(&self, profile: Option<&Profile>) -> Link {
         let gpib = self.link.gpib;
         let mut settings = profile.map_or_else(
@@ -147,7 +148,7 @@ impl Place {
     }
 }
 
-/// Runs the command with the profiles in `folder`.
+/// Runs `relayrig instrument` with the profiles in `folder`.
 pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -180,7 +181,7 @@ fn text(reply: &Reply) -> String {
     }
 }
 
-/// Returns a number for a person to read: a small or large one with its power of ten.
+/// Returns a number for a person to read: below 0.001 or from a million on, with its power of ten.
 fn decimal(value: f64) -> String {
     match value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
         true => value.to_string(),

@@ -1,6 +1,6 @@
 //! `relayrig lot`: shows the state of a lot; holds, releases, closes or reopens it.
 //!
-//! A decision is an order like those of a screen: the audit of orders records it with the name of the person who
+//! A decision is an order like one at a screen: the audit of orders records it with the name of the person who
 //! decides.
 
 use super::person;
@@ -40,7 +40,7 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Refuse runs of the lot until it is released
+    /// Refuse runs of the lot until a person releases it
     #[command(after_help = "Example: relayrig lot hold A --by li --reason 'wrong label'")]
     Hold(Decided),
     /// Allow runs of the lot again
@@ -53,7 +53,7 @@ enum Action {
         after_help = "Example: relayrig lot close A --by li --reason 'rest of the reel returned'"
     )]
     Close(Decided),
-    /// Allow runs of a complete lot again, with the recipe that it has
+    /// Allow runs of a complete lot again, with the recipe of the lot
     #[command(
         after_help = "Example: relayrig lot reopen A --by zhao --reason 'forty parts were found'"
     )]
@@ -73,7 +73,7 @@ struct Decided {
     reason: String,
 }
 
-/// Runs the command.
+/// Runs `relayrig lot`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
     match &args.action {
         Action::Show { lot, json } => show(&Archive::open(db)?, lot, *json)?,

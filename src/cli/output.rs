@@ -1,4 +1,4 @@
-//! Answers on stdout or in a file: lists as text table, CSV or JSON from the same columns.
+//! Answers on stdout or in a file: lists as text table or CSV from the same columns, or as JSON with every field.
 
 use anyhow::Context;
 use bus::Histogram;
@@ -107,7 +107,7 @@ pub(super) fn input(file: &Path) -> io::Result<Box<dyn Read>> {
     })
 }
 
-/// Buffered output that adds the line ends itself.
+/// Buffered output, line by line.
 pub(super) struct Output(BufWriter<Box<dyn Write>>);
 
 impl Output {
@@ -122,7 +122,7 @@ impl Output {
         writeln!(self.0, "{text}")?;
         self.0.flush()
     }
-    /// Writes one object and the end of the line.
+    /// Writes one object and a line end; does not flush.
     pub fn json(&mut self, object: &impl Serialize) -> anyhow::Result<()> {
         serde_json::to_writer(&mut self.0, object).map_err(io::Error::from)?;
         Ok(self.0.write_all(b"\n")?)
@@ -186,7 +186,7 @@ impl Write for Output {
     }
 }
 
-/// A text table with aligned columns. Widths grow page by page, so that a long answer needs little memory.
+/// A text table with aligned columns. Column widths grow page by page, so that a long answer needs little memory.
 pub(super) struct Table {
     widths: Vec<usize>,
     page: Vec<Vec<String>>,

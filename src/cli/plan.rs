@@ -1,6 +1,6 @@
-//! `relayrig plan`: what blocks the elements of a scene, and in which order they come off and go on; needs no rig.
+//! `relayrig plan`: what blocks the elements of a scene, and in which sequence they come off and go on; needs no rig.
 //!
-//! Exit status: 0 an order exists, 1 none does (the locked set is named), 2 bad input.
+//! Exit status: 0 a sequence exists, 1 no sequence exists (the answer names the locked set), 2 bad input.
 
 use super::history::paper::{LangArg, write_page};
 use super::output::Output;
@@ -60,7 +60,8 @@ struct SceneArgs {
 /// Space and form of an answer.
 #[derive(Debug, Args)]
 struct FormArgs {
-    /// Space that elements leave, as x,y,z of its least and of its greatest corner, mm [default: the box around all]
+    /// Space that elements leave: x,y,z of its least and of its greatest corner, mm [default: the box around all
+    /// elements]
     #[arg(
         long,
         value_name = "MM",
@@ -71,12 +72,12 @@ struct FormArgs {
     /// One JSON object per row instead of text
     #[arg(long)]
     json: bool,
-    /// Language of the text; that of the locale (LC_ALL, LC_MESSAGES, LANG) when absent, and en when it names neither
+    /// Language of the text; when absent, that of the locale (LC_ALL, LC_MESSAGES, LANG), else en
     #[arg(long, value_enum)]
     lang: Option<LangArg>,
 }
 
-/// Demands that every order takes, and its paper.
+/// Demands on a sequence, and the file for its print.
 #[derive(Debug, Args)]
 struct DemandArgs {
     /// HTML file to write instead of text, for A4: a step per row, drawn from above and from the front; - is stdout
@@ -109,7 +110,8 @@ struct InterferenceArgs {
 struct DisassemblyArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Element that must come off, with nothing else than what is in its way [default: everything that does not stay]
+    /// Element that must come off; nothing else comes off but what is in its way [default: everything that does not
+    /// stay]
     #[arg(long, value_name = "ID")]
     remove: Vec<String>,
     #[command(flatten)]
@@ -188,7 +190,7 @@ impl SceneArgs {
     }
 }
 
-/// Runs the command and returns [`Exit::Done`], or [`Exit::AnswerIsNo`] when no order exists.
+/// Runs the command and returns [`Exit::Done`], or [`Exit::AnswerIsNo`] when no sequence exists.
 ///
 /// # Errors
 /// Fails on bad input before any output; the caller reports the chain and exits with 2.

@@ -48,8 +48,8 @@ pub fn built_in() -> PossibleValuesParser {
     PossibleValuesParser::new(Folder::built_in_rigs())
 }
 
-/// Returns the recipe that a command takes without `--recipe`: that of the default relay, of the DC solid-state relay or
-/// of the quick temperature relay, or the first one of a rig with none of them.
+/// Returns the recipe that a command takes without `--recipe`: the first usual recipe that the configuration has, or else
+/// the first of all its recipes.
 pub fn usual_recipe(config: &Folder) -> String {
     const USUAL: [&str; 3] = ["jzc-22f-012", "ssr-dc-60v-3a", "thermostat-ksd9700"];
     let names = config::recipe_names(config);
@@ -63,7 +63,7 @@ pub fn usual_recipe(config: &Folder) -> String {
 }
 
 impl RigArgs {
-    /// Returns the rig of these arguments; a simulated one writes its true values to `truth`.
+    /// Returns the rig that these arguments choose; a simulated rig writes its true values to `truth`.
     ///
     /// # Errors
     /// Fails when options exclude each other, when a line has no port, or when the build lacks the simulated rig.
@@ -111,7 +111,7 @@ pub(super) fn port(text: &String) -> anyhow::Result<LinePort> {
     })
 }
 
-/// The text is no speed in the accepted range.
+/// Error: the text is no speed in the accepted range.
 #[derive(Debug, thiserror::Error)]
 #[error("found {0}, expected a number from 0.1 to 1000")]
 pub struct SpeedError(String);

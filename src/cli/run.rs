@@ -33,16 +33,16 @@ pub struct RunArgs {
     /// The rig.
     #[command(flatten)]
     pub rig: RigArgs,
-    /// Lot the parts belong to
+    /// Name of the lot
     #[arg(long, value_name = "ID")]
     pub lot: String,
     /// Recipe in config/recipes
     #[arg(long, value_name = "NAME")]
     pub recipe: String,
-    /// Parts of the lot; without it the lot goes on until it is stopped
+    /// Number of parts in the lot; when absent, the lot goes on until it is stopped
     #[arg(long, value_name = "N")]
     pub count: Option<u64>,
-    /// True values of every specimen go to this file
+    /// Write the true values of every part into this file
     #[arg(long, value_name = "FILE", requires = "sim")]
     pub truth: Option<PathBuf>,
     /// One JSON object per part, then a summary
@@ -57,7 +57,7 @@ pub struct RunArgs {
     /// Person who answers
     #[arg(long, value_name = "NAME", requires = "answer")]
     pub by: Option<String>,
-    /// Run a bare real-time loop beside the lot, to compare how late this computer wakes the two
+    /// Run a bare real-time loop beside the lot, to compare how late this computer wakes lot and loop
     #[arg(long)]
     pub bare_loop: bool,
     /// Gauge study instead of one lot: three simulated rigs measure ten parts (or --count) three times each
@@ -77,7 +77,7 @@ pub enum StudyArg {
     Grr,
 }
 
-/// Runs the command.
+/// Runs `relayrig run`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &RunArgs) -> anyhow::Result<Exit> {
     let source = args.rig.source(args.truth.clone())?;
     let order = LotOrder {

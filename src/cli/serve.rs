@@ -1,4 +1,4 @@
-//! `relayrig serve`: runs lot after lot on the rig, as its page orders; see [`Service`].
+//! `relayrig serve`: runs lot after lot on the rig, as people order at its page; see [`Service`].
 
 use super::rig::{PaceArg, RigArgs};
 use super::terminal::{Rows, Terminal};
@@ -10,7 +10,7 @@ use page::{ListenError, Listener, Tls};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
-/// Serves the page and runs the lots that it orders.
+/// Serves the page and runs the lots that people order there.
 #[derive(Debug, clap::Args)]
 #[command(
     mut_arg("pace", |pace| pace.default_value("real").hide(true)),
@@ -33,10 +33,10 @@ pub struct ServeArgs {
 /// Where the page listens.
 #[derive(Debug, Clone, clap::Args)]
 pub struct PageArgs {
-    /// Address of the page; where other computers reach it, it needs --tls-cert and --tls-key
+    /// Address of the page; an address that other computers can reach needs --tls-cert and --tls-key
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
-    /// Certificate of the page, then those of its issuers, PEM; the page is then served over https
+    /// PEM file with the certificate of the page, then those of its issuers; turns the page to https
     #[arg(long, value_name = "FILE", requires = "tls_key")]
     tls_cert: Option<PathBuf>,
     /// Private key of the certificate, PEM without password
@@ -56,7 +56,7 @@ impl PageArgs {
     }
 }
 
-/// Runs the command, with `first` as its first lot.
+/// Runs `relayrig serve`, with `first` as its first lot.
 pub fn run(files: &Files, args: &ServeArgs, first: Option<LotOrder>) -> anyhow::Result<Exit> {
     let mut rig = args.rig.clone();
     if rig.speed.is_some() {

@@ -35,13 +35,14 @@ pub struct SimArgs {
     /// World instead of config/sim.toml
     #[arg(long, value_name = "FILE")]
     pub world: Option<PathBuf>,
-    /// Recipe whose parts are in the magazine; without it jzc-22f-012, ssr-dc-60v-3a, or the first recipe of the rig
+    /// Recipe whose parts are in the magazine [default: jzc-22f-012, ssr-dc-60v-3a or thermostat-ksd9700 where the rig
+    /// has it, else its first one]
     #[arg(long, value_name = "NAME")]
     pub recipe: Option<String>,
     /// Fault by name
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
-    /// True values of every specimen go to this file: as parts land, and at the end for those still inside
+    /// Write the true values of every part into this file: as parts land, and at the end for those still inside
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
     /// A symlink per line in this directory
@@ -56,7 +57,7 @@ pub struct SimArgs {
     /// A module answers only at its own rate, as on a wire; without this option it answers at every rate
     #[arg(long)]
     pub heed_baud: bool,
-    /// Prints every change of a digital output and every expired host watchdog, one object per line
+    /// Print the journal of the rig (changes of outputs, faults, expired host watchdogs), one JSON object per line
     #[arg(long)]
     pub journal: bool,
     /// Names of all faults with unit and default
@@ -64,7 +65,7 @@ pub struct SimArgs {
     pub faults: bool,
 }
 
-/// Runs the command until it is interrupted.
+/// Runs `relayrig sim` until it is interrupted.
 pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
     let files = simulated::files(config);
     if let Some(file) = &args.instruments
@@ -160,7 +161,7 @@ fn serve_instruments(file: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
     })
 }
 
-/// Prints every change of an output until the program ends.
+/// Prints the journal of the rig until the program ends.
 fn print_journal(journal: std::sync::mpsc::Receiver<rigsim::journal::Entry>) {
     std::thread::spawn(move || {
         let mut out = std::io::stdout();

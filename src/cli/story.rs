@@ -37,15 +37,15 @@ pub struct StoryArgs {
     /// Recipe in config/recipes
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     pub recipe: String,
-    /// True values of every specimen go to this file
+    /// Write the true values of every part into this file
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
-    /// Every fault of the script and every change of a digital output go to this file, one object per line
+    /// Write the journal of the rig (changes of outputs, faults, expired host watchdogs), one JSON object per line
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
 }
 
-/// Runs the command.
+/// Runs `relayrig story`.
 ///
 /// # Errors
 /// Fails on bad input, such as a script with an unknown word.

@@ -56,12 +56,12 @@ pub struct StudyArgs {
     /// One JSON object per figure, then a summary
     #[arg(long)]
     pub json: bool,
-    /// Also writes NAME.csv and NAME.svg into this directory; `cycle` adds cycle-gantt.svg, one part through all
-    /// stations
+    /// Also write NAME.csv and NAME.svg into this directory; `cycle` adds cycle-gantt.svg, which shows one part on its
+    /// way through all stations
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Number of lots, with seeds 1 to N; `pace` runs seed 1 N times; of `plan`, number of random
-    /// scenes, of `ssr`, of made-up parts
+    /// Number of lots, with seeds 1 to N; `pace` runs seed 1 N times; for `plan`, number of random scenes; for `ssr`,
+    /// number of made-up parts
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: Option<u64>,
     /// First seed of `storm` [default: 1]
@@ -96,7 +96,7 @@ pub struct StudyArgs {
     pub rtol: Option<f64>,
 }
 
-/// Runs the command.
+/// Runs `relayrig study`.
 ///
 /// # Errors
 /// Fails on bad input, when a lot ends with bad input, or when an output cannot be written.
@@ -161,7 +161,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
     published(&report, args)
 }
 
-/// Runs a study without lots, and writes its second plot under this name.
+/// Runs a study without lots, and publishes it as [`plotted`] does.
 fn drawn(
     args: &StudyArgs,
     study: fn() -> anyhow::Result<(Report, String)>,
@@ -191,7 +191,7 @@ fn thermostats(args: &StudyArgs) -> anyhow::Result<Exit> {
     plotted(&made, args, "thermostat-batch.svg")
 }
 
-/// Publishes a report, and writes its second plot under this name.
+/// Publishes a report; with `--out`, also writes its second plot, under `name`.
 fn plotted(
     (report, plot): &(Report, String),
     args: &StudyArgs,
@@ -258,7 +258,7 @@ fn transients(args: &StudyArgs) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The tolerance is outside the range of the method.
+/// Error: the tolerance is outside the range of the method.
 #[derive(Debug, thiserror::Error)]
 #[error("expected a number from 1e-14 to 1e-2")]
 struct ToleranceError;

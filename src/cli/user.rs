@@ -80,7 +80,7 @@ const COLUMNS: [Column<Entry>; 4] = [
     }),
 ];
 
-/// Runs the command.
+/// Runs `relayrig user`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
     let mut register = Register::open(&access_path(db))?;
     let now_us = jiff::Timestamp::now().as_microsecond();
@@ -114,7 +114,7 @@ pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Returns the name of the account that calls the program, or that called sudo for it.
+/// Returns the name of the account that calls the program; under sudo, of the account that called sudo.
 fn account() -> String {
     let through_sudo = std::env::var("SUDO_USER").ok().filter(|it| !it.is_empty());
     through_sudo.unwrap_or_else(app::doctor::own_account)

@@ -36,13 +36,13 @@ enum Action {
     Replaced {
         /// Name of the counter
         name: String,
-        /// Person who replaced it
+        /// Person who replaced the part
         #[arg(long, value_name = "NAME")]
         by: String,
     },
 }
 
-/// Runs the command.
+/// Runs `relayrig wear`; an error is bad input (exit status 2).
 pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db)?;
     match &args.action {

@@ -1,4 +1,4 @@
-//! Checks that a lot may be run, before anything is opened or moved.
+//! Checks that a lot may run, before the program opens a port or moves anything.
 
 use super::answers::Answers;
 use super::calibration;
@@ -21,7 +21,7 @@ use std::path::Path;
 use std::sync::Arc;
 use texts::{Lang, Message};
 
-/// Reason why a lot is refused. Its text is printed on the command line and names the option that is wrong.
+/// Reason why a lot is refused. The text, for the command line, names the option that is wrong.
 #[derive(Debug, thiserror::Error)]
 pub enum AdmissionError {
     /// The lot's name has characters or a length that the history does not allow.
@@ -95,7 +95,7 @@ pub enum AdmissionError {
         "--lot: lot.toml has `source = \"wedge\"`; expected a lot at the page (relayrig serve), where a person scans each part"
     )]
     NeedsScreen,
-    /// A run without a screen has no answer to a prompt, or an answer that is none of its choices.
+    /// A run without a screen has no answer to a prompt, or an answer that is none of the prompt's choices.
     #[error(
         "--answer: found {found} for prompt \"{prompt}\", expected {prompt}=CHOICE, one of {choices} (or a lot at the page)"
     )]
@@ -104,7 +104,7 @@ pub enum AdmissionError {
         prompt: String,
         /// Answer as given.
         found: String,
-        /// Names of its choices.
+        /// Names of the prompt's choices.
         choices: String,
     },
     /// An answer belongs to no prompt of the lot.
@@ -125,7 +125,7 @@ pub enum AdmissionError {
 }
 
 impl AdmissionError {
-    /// Returns the refusal as a text for the page.
+    /// Returns the refusal as a message for the page.
     pub fn screen_message(&self) -> Message {
         let refusal = |code| Message::new("refusal", code);
         match self {
@@ -152,9 +152,10 @@ impl AdmissionError {
 
 /// Checks that a lot may run; returns its recipe.
 ///
-/// # Errors Fails on an invalid name or zero parts, when the recipe is faulty or lacks a required approval, when this
-/// plant cannot measure it, when the lot is held, is complete and the order is no retest, or began with another recipe,
-/// when a retest has no earlier run, and when the history cannot be read.
+/// # Errors
+/// Fails on an invalid name or zero parts; on a recipe that is faulty, lacks a required approval, or cannot be measured
+/// on this plant; on a lot that is held, began with another recipe, or is complete while the order is no retest; on a
+/// retest of a lot that never ran; and when the history cannot be read.
 pub fn admit(
     db: &Path,
     plant: &Plant,
@@ -261,8 +262,8 @@ fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), A
     }
 }
 
-/// Returns why a lot of this recipe must wait for a calibration of the rig; `None` when it need not, as on a simulated
-/// rig, which calibrates before every lot.
+/// Returns why a lot of this recipe must wait for a calibration of the rig; `None` when the lot may run, and always on
+/// a simulated rig, which calibrates before every lot.
 ///
 /// # Errors
 /// Fails when the history cannot be read.

@@ -7,7 +7,7 @@ use machine::station::orders::shelf_minutes;
 use machine::view::{By, Order};
 use serde_json::json;
 
-/// Writes an order about alarms into the history, with the change that it makes to them.
+/// Writes an order about alarms into the history, with the change that the order makes to alarms.
 ///
 /// # Errors
 /// Fails when no unacknowledged alarm has this code, or when the history cannot be written.

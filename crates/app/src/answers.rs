@@ -1,4 +1,4 @@
-//! Answers to prompts that a person gives before a run without a screen.
+//! Answers that a person gives to prompts in advance, for a run without a screen.
 
 use super::lot::{LotEvent, LotProgress, Subscriber};
 use cycle::Event;
@@ -24,7 +24,7 @@ impl Answers {
     }
 }
 
-/// Gives each prompt of a run its answer, and passes every event on.
+/// Passes every event to `outer`, and answers each prompt of the run.
 pub(super) struct Answering<'a> {
     pub answers: &'a Answers,
     pub orders: mpsc::Sender<OrderRequest>,

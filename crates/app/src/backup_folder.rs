@@ -1,8 +1,8 @@
 //! Backs up a whole rig: a dated folder holds history, people and configuration; only the newest folders stay.
 //!
 //! `prune` deletes only runs of which the history records a copy. The history does not record a backup as a copy,
-//! because a later backup deletes the earlier ones. A backup migrates neither history nor people, because an earlier
-//! program may be using the files.
+//! because a later backup deletes the earlier ones. A backup migrates neither history nor people to a newer schema,
+//! because an older version of the program may have them open.
 
 use crate::order::Files;
 use anyhow::Context;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 const NAME: &str = "relayrig-%Y%m%dT%H%M%SZ";
 /// Name of a backup that is being made.
 const PARTIAL: &str = "relayrig-%Y%m%dT%H%M%SZ.partial";
-/// Age from which a partial backup counts as left by a killed program: no backup takes this long.
+/// Age from which a partial backup counts as left behind by a killed program: no backup takes this long.
 const LEFT: SignedDuration = SignedDuration::from_hours(24);
 
 /// A backup that was made.
@@ -45,7 +45,7 @@ pub fn back_up(files: &Files, into: &Path, keep: NonZeroUsize) -> anyhow::Result
     anyhow::ensure!(!folder.exists(), "{} exists already", folder.display());
     let partial = into.join(now.strftime(PARTIAL).to_string());
     let bytes = copy_rig(files, &partial).inspect_err(|_| {
-        // The first error is returned; a failed clean-up matters less.
+        // The caller gets the first error; a failed clean-up matters less.
         let _ = fs::remove_dir_all(&partial);
     })?;
     fs::rename(&partial, &folder).with_context(|| folder.display().to_string())?;
@@ -75,7 +75,7 @@ fn dated(into: &Path, name: &str) -> Vec<(Timestamp, PathBuf)> {
     found
 }
 
-/// Deletes all but the `keep` newest backups, and what killed programs left; returns the deleted folders.
+/// Deletes all but the `keep` newest backups, and partial ones older than [`LEFT`]; returns the deleted folders.
 fn rotate(into: &Path, keep: NonZeroUsize, now: Timestamp) -> anyhow::Result<Vec<PathBuf>> {
     let mut old = backups(into);
     old.truncate(old.len().saturating_sub(keep.get()));
@@ -100,7 +100,7 @@ fn copy_rig(files: &Files, to: &Path) -> anyhow::Result<u64> {
     }
     match &files.config {
         Folder::Directory(dir) => copy_folder(dir, &to.join("config"))?,
-        // The program itself holds these files.
+        // The built-in configuration is part of the program.
         Folder::Memory(_) => {}
     }
     Ok(bytes)

@@ -19,7 +19,7 @@ pub struct MoveAnswer<'a> {
     pub t_stop: Option<f64>,
     /// Element that stops the move at `t_stop`.
     pub blocker: Option<&'a str>,
-    /// Least distance over the whole move, mm; `None` when it exceeds the range of the search.
+    /// Least distance over the whole move, mm; `None` when this distance exceeds the range of the search.
     pub clearance_mm: Option<f64>,
     /// Nearest point of the blocker at `t_stop`, mm.
     pub at: Option<[f64; 3]>,
@@ -36,7 +36,7 @@ pub struct LoadedScene {
 }
 
 impl LoadedScene {
-    /// Loads a scene file; the extension says whether it is TOML or JSON.
+    /// Loads a scene file; the extension selects TOML or JSON.
     ///
     /// # Errors
     /// Fails on an invalid file; the error names the file and the path of the field.
@@ -101,7 +101,7 @@ impl LoadedScene {
     }
 }
 
-/// Loads a scene file and returns it with its text and format; the extension says the format.
+/// Loads a scene file and returns it with its text and format; the extension selects TOML or JSON.
 pub(crate) fn load_scene(path: &Path) -> anyhow::Result<(Scene, String, Format)> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| anyhow!("{}: not readable: {error}", path.display()))?;

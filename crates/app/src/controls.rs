@@ -1,4 +1,4 @@
-//! Controls that page, signals and scripts share with a run: stop flags and the view. They outlive the run.
+//! Controls that page, signals and scripts share with a run, and that outlive the run: stop flags and the view.
 
 use super::stop_signals::StopSignals;
 use super::traces::Traces;
@@ -21,7 +21,7 @@ pub struct Controls {
     pub attended: bool,
     /// Sends the view to the screens.
     pub view: watch::Sender<View>,
-    /// Sends the alarms about the databases of the fleet to the cycle, while they last.
+    /// Sends the active alarms about the databases of the fleet to the cycle.
     pub fleet: watch::Sender<Vec<Alarm>>,
     /// Traffic of the current run; `None` before its lines are open.
     traces: Arc<Mutex<Option<Traces>>>,
@@ -40,8 +40,8 @@ impl Controls {
         }
     }
 
-    /// Makes Ctrl-C stop the lot, a second Ctrl-C abort it, and a third one end the program, until the returned thread
-    /// is dropped.
+    /// Makes Ctrl-C or SIGTERM stop the lot, a second signal abort the lot, and a third one end the program, until the
+    /// caller drops the returned handle.
     ///
     /// # Errors
     /// Fails when the operating system refuses the handlers or the thread.
@@ -50,7 +50,7 @@ impl Controls {
         StopSignals::listen(flags).context("catching Ctrl-C")
     }
 
-    /// Returns true once a stop or an abort has been ordered.
+    /// Returns true once a person or a signal has ordered a stop or an abort.
     pub fn is_stopping(&self) -> bool {
         let flags = [&self.stop, &self.abort];
         flags.iter().any(|flag| flag.load(Ordering::Acquire))
@@ -80,7 +80,7 @@ pub struct Interrupts {
 }
 
 impl Interrupts {
-    /// Listens from now on; a signal that arrives later is not lost. Panics outside a runtime.
+    /// Starts to listen; a signal that arrives before [`Self::next`] is not lost. Panics outside a runtime.
     ///
     /// # Errors
     /// Fails when the operating system refuses the handlers.

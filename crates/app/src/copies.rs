@@ -1,5 +1,5 @@
-//! Copies the history while it is in use, and deletes old runs. The history notes every copy, because a run may be
-//! deleted only after the whole run was copied.
+//! Copies the history while a rig uses it, and deletes old runs. The history notes every copy, because `prune` deletes
+//! a run only after the whole run was copied.
 
 use history::{Archive, Filter, HistoryError, Pruned, Store};
 use std::fs::File;

@@ -1,8 +1,9 @@
 //! Reasons why a command ends, with their exit status, and the cause of exit status 3.
 //!
 //! The station ends a run with `Ending::Alarm` when an alarm stops an unattended rig (`machine/src/station/safety.rs`),
-//! when the rig stays suspended for too long, or when a person stops it in trouble (`states.rs` beside it). The cycle
-//! does so when a module does not fit the wiring (`cycle/src/lib.rs`). The cause of exit status 3 of a run is
+//! when the rig stays suspended for too long, or when a person stops a rig in trouble
+//! (`machine/src/station/states.rs`). The cycle ends a run in the same way when a module does not fit the wiring
+//! (`cycle/src/lib.rs`). The cause of exit status 3 is
 //!
 //! - chosen in `lot/progress.rs`: the first alarm of the last trouble, or `aborted` after an order; for a lost history
 //!   or a failed assertion in `lot/mod.rs` and `service/mod.rs`; for a lot that the rig refuses before it begins in
@@ -94,7 +95,7 @@ impl Cause {
         Self::new(ASSERTION, text)
     }
 
-    /// `hung`: the run does not return after a signal that ends it at once.
+    /// `hung`: the run does not return after a signal that should end the run at once.
     pub fn hung() -> Self {
         let text =
             "the control cycle does not return; the modules' watchdogs make the outputs safe";

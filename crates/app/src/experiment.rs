@@ -1,4 +1,4 @@
-//! An experiment on a rig with a rack: a run without parts that finds figures of the rig.
+//! An experiment on a rig with a rack: a run without parts that measures properties of the rig.
 
 use super::exit::Exit;
 use super::lot::{Purpose, Subscriber};
@@ -12,11 +12,12 @@ use std::sync::OnceLock;
 /// Name of the lot under which the history keeps the run.
 const LOT: &str = "experiment";
 
-/// Runs an experiment; `recipe` gives the windows of temperatures. Returns what it has found, or how the run ended before
-/// that. The rack heats up behind its locked door under every check of a batch, and cools before the run ends.
+/// Runs an experiment in the temperature windows of `recipe`. Returns what the experiment found, or how the run ended
+/// without a finding. The rack heats up behind its locked door under every check of a batch, and cools before the run
+/// ends.
 ///
 /// # Errors
-/// Fails on a rig without a rack, for a recipe of another kind, or as [`super::run_lot`] does.
+/// Fails on a rig without a rack, for a faulty recipe, or as [`super::run_lot`] does.
 pub fn experiment(
     files: &Files,
     source: &RigSource,

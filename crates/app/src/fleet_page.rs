@@ -1,5 +1,5 @@
-//! The page of many rigs: one task asks the database what all rigs do, the page shows it, and each question about a history
-//! opens a reader of its own.
+//! The page of many rigs: one task asks the database what all rigs do, the page shows the answer, and each question
+//! about a history opens a reader of its own.
 
 use super::controls::Interrupts;
 use super::exit::Exit;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch::{Sender, channel};
 
-/// Longest time for one statement of a question: less than the page waits for the answer.
+/// Longest time for one SQL statement, shorter than the time for which the page waits for an answer.
 const PATIENCE: Duration = Duration::from_secs(15);
 
 /// The page, ready to serve.
@@ -26,7 +26,7 @@ pub struct FleetPage {
 }
 
 impl FleetPage {
-    /// Takes the socket, and the database with the shifts of `settings`. The database need not answer yet.
+    /// Creates the page on the socket of `listener`, for the rigs in `target`; the database need not answer yet.
     #[must_use]
     pub fn new(listener: Listener, settings: &FleetSettings, target: FleetTarget) -> Self {
         let shift = |it: &config::Shift| Shift {
@@ -50,7 +50,7 @@ impl FleetPage {
             .enable_all()
             .build()?;
         let done = runtime.block_on(self.serve(listening));
-        // A reader that still waits for the database ends with the program.
+        // Does not wait for a reader that still waits for the database.
         runtime.shutdown_background();
         done
     }
@@ -95,7 +95,7 @@ async fn watch_until(
     end.send_replace(true);
 }
 
-/// A database with many histories.
+/// The database that holds the histories of all rigs.
 #[derive(Debug)]
 struct Database(FleetTarget);
 

@@ -1,9 +1,9 @@
 //! Follows the live traffic of a running controller through its page. The controller keeps the port for itself, and the
 //! follower sends nothing to a module.
 //!
-//! The page's server keeps the last messages of every line (`/api/trace`). The follower polls them and reports the new
-//! ones, all lines merged in order of time, with a gap where more messages passed between two polls than the server
-//! keeps. It ends with the controller.
+//! The page's server keeps the last messages of every line (`/api/trace`). The follower polls these messages and
+//! reports the new ones, all lines merged in order of time, with a gap where more messages passed between two polls
+//! than the server keeps. The follower ends when the controller does.
 
 use anyhow::{Context, anyhow, bail};
 use serde::Deserialize;
@@ -13,7 +13,7 @@ use thiserror::Error;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-/// Time between two polls: a line at 115200 baud carries some 130 messages in it, and the server keeps a thousand.
+/// Time between two polls, in which a line at 115200 baud carries some 130 messages; the server keeps a thousand.
 const POLL_INTERVAL: Duration = Duration::from_millis(200);
 /// Longest wait for an answer of the server.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
@@ -56,7 +56,7 @@ struct Line {
 pub struct Message {
     /// Instant of the message, microseconds of rig time.
     pub at_us: u64,
-    /// Direction as one character: sent, received or stray.
+    /// Direction as one character: `>` sent, `<` received, `~` stray.
     pub way: String,
     /// Bytes of the message, escaped.
     pub text: String,
@@ -117,7 +117,7 @@ impl Delivered {
     }
 }
 
-/// Reports each new message to `report` until the controller ends.
+/// Passes each new message to `report` until the controller ends. Fails when the first poll or `report` fails.
 pub async fn follow(
     page: &Page,
     mut report: impl FnMut(&Update) -> anyhow::Result<()>,

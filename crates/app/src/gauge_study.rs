@@ -1,9 +1,9 @@
-//! Gauge repeatability and reproducibility (AIAG) of the rig itself, on parts that it measures several times.
+//! Gauge repeatability and reproducibility (AIAG) of the rig itself, on parts that the rig measures several times.
 //!
-//! Three simulated rigs stand for the operators: each has errors of its own and is calibrated by its reference parts,
-//! as before any lot. Each measures the same ten parts three times. The parts are the same (fault `parts_seed` of the
-//! simulated rig), come in the same order (fault `refeed`), and operate a little differently each time, as real ones
-//! do. The history keeps the readings of each rig as one lot.
+//! Three simulated rigs take the place of the operators: each has errors of its own and is calibrated by its reference
+//! parts, as before any lot. Each measures the same ten parts three times. The parts are the same (fault `parts_seed`
+//! of the simulated rig), come in the same order (fault `refeed`), and operate a little differently each time, as real
+//! parts do. The history keeps the readings of each rig as one lot.
 
 use super::exit::Exit;
 use super::lot::{Purpose, Subscriber};
@@ -15,7 +15,7 @@ use machine::dut::Characteristic;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, GaugeRrError, Reading, anova};
 
-/// Number of rigs, which take the place of operators. This number and the next two are usual for AIAG.
+/// Number of rigs, which take the place of operators. AIAG usually takes three operators, three trials and ten parts.
 const OPERATORS: u64 = 3;
 /// Number of times that each rig measures each part.
 const TRIALS: u64 = 3;
@@ -33,7 +33,8 @@ pub struct Figure {
     pub by_range: Option<GaugeRr>,
 }
 
-/// Returns the rig that stands for one operator: it has errors of its own and feeds the same parts again and again.
+/// Returns the rig that takes the place of one operator: a rig with errors of its own that feeds the same parts again
+/// and again. Returns a real rig unchanged.
 fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
     let _ = (operator, parts);
     match source.clone() {
@@ -52,7 +53,7 @@ fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
 /// that did not complete.
 ///
 /// # Errors
-/// Fails on bad input, as any lot does.
+/// Fails on fewer than two parts, and on bad input, as any lot does.
 pub fn run(
     files: &Files,
     source: &RigSource,

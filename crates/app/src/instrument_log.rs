@@ -10,9 +10,9 @@ use std::fmt::Write;
 pub(super) struct InstrumentLog {
     /// Name in `rig.toml`.
     pub name: String,
-    /// Name of its profile.
+    /// Name of the instrument's profile.
     pub profile: String,
-    /// Address of the link, as `rig.toml` writes it.
+    /// Address of the link, in the notation of `rig.toml`.
     pub link: String,
     /// Last messages and health of the link.
     pub log: LinkLog,
@@ -56,7 +56,7 @@ impl InstrumentLog {
     }
 
     /// Returns the last traffic as the text of an alarm file: a line about the instrument, then a line for each message
-    /// with rig time in microseconds, program and generation, direction, bytes.
+    /// with rig time in microseconds, numbers of program and connection, direction, bytes.
     pub fn text(&self) -> String {
         let identity = self.log.health().identity;
         let identity = identity.as_deref().unwrap_or("not identified");

@@ -19,11 +19,11 @@ pub(super) struct InstrumentTasks<'a> {
     pub wiring: &'a Wiring,
     /// Clock of the rig.
     pub pace: &'a Pace,
-    /// Number that differs from run to run; the links prove with it that replies belong to their queries.
+    /// Number that differs from run to run; with this number a link proves that a reply belongs to its query.
     pub seed: u64,
 }
 
-/// A running task. It makes its instrument safe once the cycle has dropped its ends of the queues.
+/// A running task, which makes its instrument safe once the cycle has dropped the ends of the task's queues.
 pub struct InstrumentTask {
     name: String,
     /// Traffic and health.
@@ -47,7 +47,7 @@ impl InstrumentTask {
 }
 
 impl InstrumentTasks<'_> {
-    /// Starts a task for each instrument, at the link of `rig.toml` or the one that `other` returns for its name.
+    /// Starts a task for each instrument, at the link that `other` returns for its name, or else that of `rig.toml`.
     pub fn open_all(
         &self,
         other: impl Fn(&str) -> Option<LinkAddress>,
@@ -62,8 +62,8 @@ impl InstrumentTasks<'_> {
         instruments.map(at).collect()
     }
 
-    /// Starts the task of an instrument; `opener` opens its stream, again after every doubt. `address` says what stands
-    /// between the stream and the instrument.
+    /// Starts the task of an instrument; `opener` opens the stream, and again whenever a reply is in doubt. `address`
+    /// says whether a serial port or a GPIB adapter lies on the way to the instrument.
     pub fn open(
         &self,
         instrument: Instrument,

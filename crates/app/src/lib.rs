@@ -1,11 +1,11 @@
 //! The application layer: a lot, a day of service, a story, a calibration and a follower of the traffic as types.
 //!
-//! The command line turns arguments into these types and results into text; nothing here reads an argument. Only
-//! [`progress`] writes to the terminal; log messages go through `tracing`.
+//! The command line turns arguments into these types and results into text; no module here reads a command-line
+//! argument. Only [`progress`] writes to the terminal; log messages go through `tracing`.
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`order`], [`source`] | the lot ordered, and its rig |
+//! | [`order`], [`source`] | the ordered lot, and its rig |
 //! | [`admission`] | checks before a lot may run |
 //! | [`lot`] | a run: one stream of events and its subscribers |
 //! | [`real_time`] | the thread of the lines and the cycle |
@@ -110,10 +110,10 @@ pub fn run_lot(
     run_answered(files, source, order, purpose, (&none, outer))
 }
 
-/// Runs one unattended lot; Ctrl-C stops it. `answers` go to the prompts of the lot; `outer` receives every event.
+/// Runs one unattended lot, which Ctrl-C stops. `answers` go to the prompts of the lot; `outer` receives every event.
 ///
 /// # Errors
-/// Fails on bad input: a configuration, lot, rig or answer that is refused before anything moves.
+/// Fails on bad input: a configuration, lot, rig or answer that the program refuses before anything moves.
 pub fn run_answered(
     files: &Files,
     source: &RigSource,
@@ -153,7 +153,7 @@ pub fn run_answered(
     })
 }
 
-/// Runs `work` on a runtime of one thread; in virtual time the runtime's clock is that of the rig.
+/// Runs `work` on a runtime of one thread; in virtual time the runtime's clock is the clock of the rig.
 ///
 /// # Errors
 /// Fails as `work` does, or when the runtime cannot start.
@@ -171,11 +171,12 @@ pub fn block_on<T>(
     done.context("the run has no result")?
 }
 
-/// Creates a runtime of one thread for runs on `source`. When rig time is virtual, its clock is paused and it watches no
-/// file or socket: a rig in this process has none, and each step of the clock would ask the kernel for events.
+/// Creates a runtime of one thread for runs on `source`. In virtual time the runtime's clock is paused and its I/O
+/// driver is off: a rig in this process has no file or socket, and the driver would call the kernel at each step of the
+/// clock.
 ///
 /// # Errors
-/// Fails when the operating system refuses it.
+/// Fails when the operating system refuses the runtime.
 pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
     let mut builder = tokio::runtime::Builder::new_current_thread();
     #[cfg(feature = "sim")]

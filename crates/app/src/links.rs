@@ -22,25 +22,25 @@ use rigsim::{SharedRig, pty, scpi::serve::Served, wire};
 use scpi::LinkAddress;
 use tokio::sync::mpsc;
 
-/// How long a measuring line waits for a late reply, ms. The line requests the name of a silent module three times;
-/// with this wait that takes 0.65 s, so the host watchdogs of the line's other modules still receive their heartbeat in
-/// time.
+/// How long a measuring line waits for a late reply, ms. The line requests the name of a silent module three times; at
+/// this wait the three requests take 0.65 s, so the host watchdogs of the line's other modules receive their heartbeat
+/// in time.
 const LATE_REPLY_MS: u64 = 180;
 
 /// Name of the code reader's line for `--line` and on the simulated rig.
 const READER: &str = "serial_reader";
-/// Number of readings that may wait for the cycle.
+/// Number of code readings that may wait for the cycle.
 const READINGS: usize = 16;
 
-/// Returns the code reader that gives this run its serial numbers; `None` when none does.
+/// Returns the code reader that gives this run its serial numbers; `None` for a run without a code reader.
 fn reader<'a>(context: &LotContext<'a>) -> Option<&'a SerialReaderSettings> {
     let source = context.plant.lot.serial.as_ref().map(|it| it.source);
     let reads = context.purpose == Purpose::Lot && source == Some(SourceName::Reader);
     context.plant.serial_reader.as_ref().filter(|_| reads)
 }
 
-/// Function that returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules keep
-/// no count.
+/// Function that returns the number of EEPROM writes of all modules so far; `None` on a real rig, whose modules keep no
+/// count.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.
@@ -49,16 +49,16 @@ pub struct Lines {
     keeper: Keeper,
     /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
-    /// Queue ends of the instruments that the cycle holds, in the order of the wiring.
+    /// Queue ends that the cycle holds for the instruments, in the order of the wiring.
     pub instruments: Vec<InstrumentEnds>,
     instrument_tasks: Vec<InstrumentTask>,
-    /// Readings of the code reader; `None` in a lot without one.
+    /// Readings of the code reader; `None` in a lot without a code reader.
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Trace and health of each line, with its name.
     pub logs: Vec<(String, LineLog)>,
     /// Traffic and health of each instrument.
     pub(super) instrument_logs: Vec<InstrumentLog>,
-    /// The simulated rig behind the lines; `None` on a real one.
+    /// The simulated rig behind the lines; `None` on a real rig.
     #[cfg(feature = "sim")]
     rig: Option<SharedRig>,
     #[cfg(feature = "sim")]
@@ -102,14 +102,14 @@ impl Lines {
         self.instrument_logs = tasks.map(|it| it.log.clone()).collect();
     }
 
-    /// Waits until every task has ended, and so has made its instrument safe or given up.
+    /// Waits until the task of every instrument has ended, and so has made its instrument safe or given up.
     pub async fn end_instruments(&mut self) {
         for task in std::mem::take(&mut self.instrument_tasks) {
             task.end().await;
         }
     }
 
-    /// Finishes a run on a simulated rig: writes its truth file, logs collisions, late replies and overdriven coils.
+    /// Finishes a run on a simulated rig: writes the truth file, logs collisions, late replies and overdriven coils.
     ///
     /// # Errors
     /// Fails when the file cannot be written.
@@ -148,7 +148,7 @@ impl Lines {
         self.open(plant, line, bus::serial_port(path, baud), pace);
     }
 
-    /// Starts the task of the code reader; `open` opens its port, again after every failure.
+    /// Starts the task of the code reader; `open` opens the port, and again after every failure.
     fn open_reader(&mut self, settings: &SerialReaderSettings, open: OpenPort, pace: &Pace) {
         let (given, readings) = mpsc::channel(READINGS);
         let reading = bus::run_reader(open, settings.no_code.clone(), *pace, given);
@@ -156,7 +156,7 @@ impl Lines {
         self.readings = Some(readings);
     }
 
-    /// Starts the task of a line; `open` opens its port, again after every failure.
+    /// Starts the task of a line; `open` opens the port, and again after every failure.
     fn open(&mut self, plant: &Plant, line: LineId, open: OpenPort, pace: &Pace) {
         let settings = settings(plant, line);
         self.logs
@@ -192,10 +192,11 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
     settings
 }
 
-/// Opens every line of the plant; `keeper` runs their tasks.
+/// Opens every line and instrument of the plant; `keeper` runs their tasks.
 ///
 /// # Errors
-/// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built.
+/// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built or lacks an
+/// instrument.
 pub async fn open(context: &LotContext<'_>, pace: &Pace, keeper: &Keeper) -> anyhow::Result<Lines> {
     let lines = Lines::none(keeper);
     match context.source {
@@ -255,16 +256,16 @@ fn instrument_tasks<'a>(
     }
 }
 
-/// Returns the present time, which no other run has as its seed.
+/// Returns the present time, microseconds since 1970 UTC: a seed that no other run has.
 fn started_us() -> u64 {
     jiff::Timestamp::now().as_microsecond().unsigned_abs()
 }
 
-/// Checks that the wiring has every line or instrument that `--line` names, and that the link of an instrument can be
-/// read.
+/// Checks that the wiring has every line or instrument that `--line` names, and that the link given for an instrument
+/// is a valid address.
 ///
 /// # Errors
-/// Fails on the first name that the wiring lacks, and on a link that cannot be read.
+/// Fails on the first name that the wiring lacks, and on an invalid address.
 pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
     let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
     let reader = plant.serial_reader.as_ref().map(|_| READER);
@@ -328,7 +329,7 @@ async fn simulated_lines(
             let mut open = bus::from_streams(move || plug.open());
             match (name == READER, reader) {
                 (true, Some(reader)) => lines.open_reader(reader, open, pace),
-                // The line ends, because its port is opened and closed at once.
+                // Nobody reads codes: the simulated reader ends when its port is opened and closed at once.
                 (true, None) => drop(open()),
                 (false, _) => lines.open(plant, named(&name)?, open, pace),
             }

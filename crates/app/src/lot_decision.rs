@@ -10,7 +10,7 @@ use serde_json::json;
 use std::path::Path;
 use texts::Message;
 
-/// Decision that an order of an operator makes about a lot, with its reason.
+/// Decision that an order of a person makes about a lot, with its reason.
 #[derive(Debug, Clone, Copy)]
 pub struct AboutLot<'a> {
     /// Hold, release, close or reopen.
@@ -21,7 +21,7 @@ pub struct AboutLot<'a> {
     pub reason: &'a str,
 }
 
-/// Writes an order about a lot, and the state that the order gives the lot.
+/// Writes an order about a lot into the history, with the state that the order gives the lot.
 ///
 /// # Errors
 /// Fails with the refusal for an unknown lot, a state of the lot that forbids the decision, a missing reason, or a
@@ -45,7 +45,7 @@ pub fn write(db: &Path, order: &Order, by: &By, about: AboutLot<'_>) -> Result<(
         .map_err(trouble)
 }
 
-/// Returns the audit row of an order that is given while no run of its lot is under way.
+/// Returns the audit row of an order that a person gives while no run of its lot is under way.
 pub fn audit(order: &Order, by: &By) -> Row {
     Row::Order(OrderRecord {
         lot: None,

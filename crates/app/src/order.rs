@@ -1,4 +1,4 @@
-//! What a person or a program orders: a lot, and its files.
+//! The order of a lot, and the files that a run uses.
 
 use config::Folder;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ pub struct LotOrder {
     pub lot: String,
     /// Name of a recipe in `recipes/` of the configuration.
     pub recipe: String,
-    /// Number of parts; `None`: the lot continues until it is stopped.
+    /// Number of parts; `None`: the lot continues until a person or a signal stops it.
     pub count: Option<u64>,
     /// Name of the person who agreed to test the lot's parts again; the history keeps the first results too. `None`: no
     /// retest.

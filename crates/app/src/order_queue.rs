@@ -7,12 +7,13 @@ use tokio::sync::mpsc;
 #[derive(Debug)]
 pub struct OrderQueue {
     pub(super) orders: mpsc::Receiver<OrderRequest>,
-    /// Keeps the channel open, because the cycle stops reading orders from a closed one.
+    /// Keeps the channel open, because the cycle stops reading orders from a closed channel.
     _sender: Option<mpsc::Sender<OrderRequest>>,
 }
 
 impl OrderQueue {
-    /// Returns a queue that stays open and never delivers an order; an unattended station resets and starts by itself.
+    /// Returns a queue that stays open and never delivers an order, for an unattended station, which resets and starts
+    /// by itself.
     pub fn without_orders() -> Self {
         let (given, orders) = mpsc::channel(1);
         Self {

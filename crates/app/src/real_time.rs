@@ -1,8 +1,8 @@
-//! Runs the lines and the cycle on a thread of their own, raised above all ordinary processes where the system allows
-//! it.
+//! Runs the lines and the cycle on a thread of their own, with a priority above all ordinary processes where the system
+//! grants it.
 //!
-//! At real pace neither history nor page nor log run on this thread. In virtual time the caller's own thread takes its
-//! place, because its clock is the clock of the rig.
+//! At real pace neither history nor page nor log run on this thread. In virtual time the lines and the cycle run on the
+//! caller's thread, because the paused clock of that thread's runtime is the clock of the rig.
 
 use anyhow::Context;
 use bus::{Pace, Passage};
@@ -26,26 +26,26 @@ use units::{RigTime, Span};
 
 /// Priority under SCHED_FIFO: above every ordinary process, below the kernel threads that handle interrupts (50).
 pub const PRIORITY: u8 = 49;
-/// Interval of the waits of a latency test, as cyclictest has it.
+/// Interval of the waits of a latency test, the default of cyclictest.
 pub const INTERVAL: Span = Span::ms(1);
 /// Interval of the waits of the bare loop: about that of the cycle. A stall of the computer ends one wait late, however
 /// short the others are, so percentiles compare only between loops that wait equally often.
 const BARE_INTERVAL: Span = Span::ms(10);
 
-/// Longest time for which the thread waits at its end for tasks that must end by themselves.
+/// Longest time for which the thread, before it ends, waits for tasks that must end by themselves.
 const ENDS_WITHIN: Duration = Duration::from_secs(12);
 
 /// Spawns tasks onto the rig's thread.
 #[derive(Debug, Clone)]
 pub struct Keeper {
-    /// Spawns tasks that are cut off when the thread ends.
+    /// Spawns tasks that are aborted when the thread ends.
     pub handle: Handle,
     /// Each task that must end by itself holds a clone.
     awaited: mpsc::Sender<()>,
 }
 
 impl Keeper {
-    /// Spawns a task for whose end the thread waits, at most [`ENDS_WITHIN`].
+    /// Spawns a task for which the thread, before it ends, waits for at most [`ENDS_WITHIN`].
     pub fn spawn<T: Send + 'static>(
         &self,
         task: impl Future<Output = T> + Send + 'static,
@@ -58,7 +58,7 @@ impl Keeper {
     }
 }
 
-/// A task that is cut off when this handle is dropped.
+/// Handle of a task; dropping the handle aborts the task.
 #[derive(Debug)]
 pub struct Owned<T>(JoinHandle<T>);
 
@@ -83,19 +83,19 @@ impl<T> Drop for Owned<T> {
     }
 }
 
-/// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks; at real pace it first waits for
-/// those of [`Keeper::spawn`].
+/// A thread whose runtime serves the lines and the cycle. At real pace, dropping the value waits for the tasks of
+/// [`Keeper::spawn`] and then aborts all other tasks.
 pub struct RigThread {
     keeper: Keeper,
-    /// Rights that the system grants the thread; the lateness in it is empty.
+    /// Rights that the system grants the thread; this view holds no lateness.
     pub rights: HostView,
-    /// How late this computer passes bytes on; measured at real pace.
+    /// How late this computer passes bytes on; measured at real pace only.
     pub passage: Passage,
     own: Option<(oneshot::Sender<()>, Thread<()>)>,
 }
 
 impl RigThread {
-    /// Returns the current thread in virtual time; otherwise starts a thread and raises its priority.
+    /// Takes the current thread in virtual time; at real pace starts a thread and raises its priority.
     ///
     /// # Errors
     /// Fails when the system refuses a thread or its runtime.
@@ -154,7 +154,7 @@ impl RigThread {
 
 impl Drop for RigThread {
     fn drop(&mut self) {
-        // Other clones are those of tasks.
+        // From here on only tasks hold clones of the sender.
         self.keeper.awaited = mpsc::channel(1).0;
         if let Some((stop, thread)) = self.own.take() {
             let _ = stop.send(());
@@ -165,7 +165,7 @@ impl Drop for RigThread {
     }
 }
 
-/// Raises this thread to SCHED_FIFO and locks the memory of the program, as far as the system grants it.
+/// Raises this thread to SCHED_FIFO and locks the memory of the program, as far as the system grants these rights.
 fn raise() -> HostView {
     let mut rights = HostView::default();
     match raise_thread() {
@@ -185,13 +185,13 @@ pub enum Refused {
     /// The thread may not have a real-time priority.
     #[error("SCHED_FIFO: {0}")]
     Fifo(thread_priority::Error),
-    /// Memory may be locked up to a limit only, beyond which the system would refuse memory that the program needs.
+    /// The program may lock memory only up to a limit, beyond which the system would refuse it further memory.
     #[error("locked memory: found a limit of {limit_kb} kB, expected none")]
     Limit {
         /// The limit (RLIMIT_MEMLOCK), kB.
         limit_kb: u64,
     },
-    /// Memory may not be locked.
+    /// The program may not lock memory.
     #[error("locked memory: {0}")]
     Lock(rustix::io::Errno),
 }
@@ -246,7 +246,7 @@ impl BareLoop {
         let stopped = Arc::clone(&stop);
         let thread = std::thread::Builder::new().name("bare loop".into());
         let thread = thread.spawn(move || {
-            // Without the right the loop measures a thread of usual priority.
+            // Without the right to this priority, the loop measures a thread of usual priority.
             let _ = raise_thread();
             bare_loop(&stopped)
         });

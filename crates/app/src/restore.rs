@@ -1,4 +1,4 @@
-//! Restores a rig from a backup: checks history, people and configuration, then puts them in place.
+//! Restores a rig from a backup: copies and checks history, people and configuration, then puts the copies in place.
 //!
 //! Replaced files stay beside the restored ones as `NAME.before-TIME`. The restore replaces a file only after it has
 //! made and checked all copies.
@@ -30,7 +30,7 @@ enum Kept {
 /// An item to restore, with its path in the backup and its target.
 type Item<'a> = (Kept, &'a Path, PathBuf);
 
-/// A backup, with what it holds.
+/// A backup and its items.
 #[derive(Debug)]
 pub struct Contents {
     /// Folder of the backup, or its history file.
@@ -41,10 +41,10 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Finds the backup at `at`: a dated folder, a folder of dated folders (the newest counts), or a copied history.
+    /// Finds the backup at `at`: a dated folder, a folder of dated folders (finds the newest), or a copied history.
     ///
     /// # Errors
-    /// Fails when there is none, or when a folder holds several histories.
+    /// Fails when `at` holds no backup, or when a folder holds several histories.
     pub fn find(at: &Path) -> anyhow::Result<Self> {
         let newest = backups(at).pop().map(|(_, folder)| folder);
         let at = newest.unwrap_or_else(|| at.to_owned());
@@ -81,9 +81,10 @@ impl Contents {
 
     /// Restores the items of the backup to `files`; returns the new paths of the files and folders that they replace.
     ///
-    /// # Errors Fails, and replaces nothing, when a target exists and `replace` is false, when another program has a
-    /// target open, or when a copy cannot be made or checked. Fails too when a checked copy cannot be moved into place;
-    /// other copies may be in place then. No copy stays beside its target.
+    /// # Errors
+    /// Fails, and replaces nothing, when a target exists and `replace` is false, when another program has a target
+    /// open, or when a copy cannot be made or checked. Fails too when a checked copy cannot be moved into place; other
+    /// copies may be in place then. No copy stays beside its target.
     pub fn restore(&self, files: &Files, replace: bool) -> anyhow::Result<Vec<PathBuf>> {
         let moves = self.moves(files)?;
         for (kept, _, target) in moves.iter().filter(|(_, _, target)| target.exists()) {
@@ -97,7 +98,7 @@ impl Contents {
         }
         let replaced = exchange(&moves);
         for (.., target) in &moves {
-            // The result of `exchange` is returned; a failed clean-up matters less.
+            // The caller gets the result of `exchange`; a failed clean-up matters less.
             let _ = discard(&with_end(target, STAGED));
         }
         replaced
@@ -177,7 +178,7 @@ fn check_history(path: &Path) -> anyhow::Result<String> {
     ))
 }
 
-/// Copies all items beside their targets, then puts them in place; returns the paths of the replaced ones.
+/// Copies all items beside their targets, then puts the copies in place; returns the new paths of the replaced items.
 fn exchange(moves: &[Item<'_>]) -> anyhow::Result<Vec<PathBuf>> {
     for (kept, from, target) in moves {
         let staged = with_end(target, STAGED);
@@ -214,7 +215,8 @@ fn stage(kept: Kept, from: &Path, staged: &Path) -> anyhow::Result<()> {
     check(kept, staged).map(drop)
 }
 
-/// When root restores, gives `new` the owner of `old`, which it replaces, or of the nearest existing folder around it.
+/// When root restores, gives `new` the owner of the replaced item `old`, or of the nearest existing folder around
+/// `old`.
 fn inherit(new: &Path, old: &Path) -> std::io::Result<()> {
     let model = old.ancestors().find_map(|it| fs::metadata(it).ok());
     if let Some(model) = model
@@ -231,8 +233,8 @@ fn inherit(new: &Path, old: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Renames a folder, or a file with the files that SQLite keeps beside it; returns the new path, `None` if it is
-/// absent.
+/// Renames a folder, or a file with the files that SQLite keeps beside it; returns the new path, `None` when `target`
+/// is absent.
 fn set_aside(target: &Path, end: &str) -> std::io::Result<Option<PathBuf>> {
     let aside = with_end(target, end);
     for beside in

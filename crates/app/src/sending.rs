@@ -1,5 +1,5 @@
-//! Sends the history to the databases of `fleet.toml` while a rig runs. The threads that send share nothing with that of
-//! the rig but the history file, the view and the alarms.
+//! Sends the history to the databases of `fleet.toml` while a rig runs. The sending threads share only the history
+//! file, the view and the alarms with the thread of the rig.
 
 use super::controls::Controls;
 use super::order::Files;
@@ -7,7 +7,7 @@ use fleet::{Pusher, TargetState};
 use machine::station::trouble::Alarm;
 use machine::view::FleetView;
 
-/// Starts to send; returns `None` when `fleet.toml` names no database. Ends when the value is dropped.
+/// Starts to send, until the returned value is dropped; returns `None` when `fleet.toml` names no database.
 ///
 /// # Errors
 /// Fails for a faulty `fleet.toml`.
@@ -38,7 +38,7 @@ pub(super) fn start(files: &Files, controls: &Controls) -> anyhow::Result<Option
     )))
 }
 
-/// Returns the alarm about a database that lacks parts for too long.
+/// Returns the alarm about a database that has lacked parts for longer than `alarm_after_s`; `None` for any other.
 fn alarm(state: &TargetState) -> Option<Alarm> {
     let late = state.is_late();
     late.then(|| Alarm::fleet_late(&state.url, state.alarm_after_s))

@@ -1,4 +1,4 @@
-//! Builds the simulated rig of a run, or takes over one that lives from run to run.
+//! Builds the simulated rig of a run, or loads a simulated rig that lives from run to run.
 
 use super::order::LotOrder;
 use super::source::Simulated;
@@ -9,7 +9,7 @@ use rigsim::{Files, Options, SharedRig};
 /// A simulated rig that exists before and after the run.
 #[derive(Debug, Clone)]
 pub struct LiveRig {
-    /// The rig; rig time of a run begins at the time that the rig has reached.
+    /// The rig; each run takes the present time of the rig as its rig time zero.
     pub rig: SharedRig,
     /// Wall clock at rig time zero of the run, microseconds since 1970 UTC.
     pub epoch_us: i64,
@@ -36,8 +36,8 @@ pub fn files(folder: &Folder) -> Files {
     }
 }
 
-/// Returns the faults of the source and, unless it has `golden_every`, that fault with the interval of the lot's
-/// reference checks, so that the magazine holds a reference part for each check.
+/// Returns the faults of the source. Adds fault `golden_every` with the interval of the lot's reference checks, unless
+/// the source sets it; the magazine then holds a reference part for each check.
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();
     let asked = faults.iter().any(|it| it.starts_with("golden_every"));

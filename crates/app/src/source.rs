@@ -1,4 +1,4 @@
-//! Selects the rig of a run: the one at serial ports, or a simulated one.
+//! Selects the rig of a run: the real rig at serial ports, or a simulated rig.
 
 #[cfg(feature = "sim")]
 use super::simulated::LiveRig;
@@ -8,19 +8,19 @@ use std::path::PathBuf;
 /// Rig of a run.
 #[derive(Debug, Clone)]
 pub enum RigSource {
-    /// The rig at the serial ports of `rig.toml`; lines listed here have another port.
+    /// The rig at the ports of `rig.toml`; an entry of the list replaces a port.
     Serial(Vec<LinePort>),
     /// The simulated rig.
     #[cfg(feature = "sim")]
     Simulated(Simulated),
 }
 
-/// A line with the port that replaces the one in `rig.toml`.
+/// A line, code reader or instrument, with the port or link that replaces the one in `rig.toml`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinePort {
-    /// Name of the line in `rig.toml`.
+    /// Name in `rig.toml`; `serial_reader` for the code reader.
     pub line: String,
-    /// Path of the serial port.
+    /// Path of the serial port; for an instrument, the address of its link.
     pub port: String,
 }
 
@@ -92,7 +92,7 @@ impl RigSource {
         }
     }
 
-    /// Returns the seed of the simulated rig; `None` on a real one.
+    /// Returns the seed of the simulated rig; `None` on a real rig.
     pub fn seed(&self) -> Option<u64> {
         match self {
             Self::Serial(_) => None,

@@ -3,11 +3,11 @@
 //! | signal | effect |
 //! |---|---|
 //! | first | the run finishes the parts inside |
-//! | second | the run ends at once; after [`RUN_ENDS_WITHIN`] the program ends without it |
+//! | second | the run ends at once; after [`RUN_ENDS_WITHIN`] the program ends without the run |
 //! | third | the program ends without the run |
 //!
-//! The run has another thread, so these signals also end a program whose run never returns: then the host watchdogs of
-//! the modules make the outputs safe, and only message and exit status are left to give.
+//! The run has another thread, so these signals also end a program whose run never returns. The program then gives only
+//! a message and an exit status; the host watchdogs of the modules make the outputs safe.
 
 use super::controls::Interrupts;
 use super::exit::{Cause, Exit};
@@ -19,14 +19,15 @@ use tokio::sync::oneshot;
 /// Longest time from the second signal to the end of the run: more than the tasks of the rig's thread may take.
 const RUN_ENDS_WITHIN: Duration = Duration::from_secs(20);
 
-/// The thread; it ends when this handle is dropped.
+/// Handle of the thread; dropping the handle ends the thread.
 #[derive(Debug)]
 pub struct StopSignals {
     _run: oneshot::Sender<()>,
 }
 
 impl StopSignals {
-    /// Listens from now on, also outside a runtime; the signals set the two flags in turn.
+    /// Starts to listen, also outside a runtime; the first signal sets the first flag, the second signal the second
+    /// flag.
     ///
     /// # Errors
     /// Fails when the operating system refuses the handlers or the thread.

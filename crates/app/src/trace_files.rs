@@ -1,4 +1,4 @@
-//! Trace files beside the history, `NAME.alarm-MILLISECONDS-LINE.trace`: names, and deletion by number and age.
+//! Trace files beside the history, `NAME.alarm-MILLISECONDS-LINE.trace`: makes names, and deletes by number and age.
 
 use crate::order::folder_of;
 use config::HistorySettings;
@@ -16,10 +16,10 @@ pub(crate) fn trace_path(stem: &Path, at_ms: i64, line: &str) -> PathBuf {
     with_end(stem, &format!(".alarm-{at_ms}-{line}.trace"))
 }
 
-/// Deletes the traces of all but the newest alarms, and of those that are too old at `now_ms`. Logs a failed deletion.
+/// Deletes the traces of all but the newest alarms, and of alarms that are too old at `now_ms`. Logs a failed deletion.
 ///
-/// A trace from after `now_ms` was written before the clock was set back: it counts as older than all others, so that
-/// it never displaces a new one.
+/// A trace dated after `now_ms` was written before somebody set the clock back. Such a trace counts as older than all
+/// others, so that it never displaces a new one.
 pub(crate) fn tidy(stem: &Path, keep: &HistorySettings, now_ms: i64) {
     let files = trace_files(stem);
     let alarms: BTreeSet<(bool, i64)> = files

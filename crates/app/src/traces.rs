@@ -1,5 +1,5 @@
-//! Writes the last traffic of every line and instrument to files when an alarm occurs; reports the health of modules and
-//! instruments.
+//! Writes the last traffic of every line and instrument to files when an alarm occurs; reports the health of modules
+//! and instruments.
 
 use crate::instrument_log::InstrumentLog;
 use crate::links::Lines;
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texts::Lang;
 
-/// Largest number of alarms per run for which traces are written; the first alarms explain the most.
+/// Greatest number of alarms per run for which the program writes traces; the first alarms explain the most.
 const MAX_TRACES: usize = 8;
 
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ struct LineSource {
     log: LineLog,
 }
 
-/// Logs of a run's lines and instruments, and the path of their trace files.
+/// Logs of a run's lines and instruments, and where their trace files go.
 #[derive(Debug, Clone)]
 pub struct Traces {
     /// Path of the history file without its extension.
@@ -65,9 +65,9 @@ impl Traces {
         }
     }
 
-    /// Writes the trace of every line and instrument, and returns the paths of the files that remain. Then deletes old
-    /// traces; with `[history]` keeping none, these too. After `MAX_TRACES` calls writes nothing more. Logs a failed
-    /// write; the run continues.
+    /// Writes the trace of every line and instrument, then deletes old traces, and the new ones too when `[history]`
+    /// keeps none. Returns the paths of the new files that remain. Writes nothing after `MAX_TRACES` calls. Logs a
+    /// failed write; the run continues.
     pub fn dump(&mut self, at_us: i64) -> Vec<PathBuf> {
         if self.dumped >= MAX_TRACES {
             return Vec::new();
@@ -93,7 +93,8 @@ impl Traces {
         written
     }
 
-    /// Returns the last messages of every line, with their meaning, then those of every instrument; at most `last` each.
+    /// Returns the last messages of every line, with their meaning, then those of every instrument; at most `last`
+    /// each.
     pub fn messages(&self, last: usize) -> Vec<LineTraffic> {
         let sources = self.sources.iter();
         let lines = sources.map(|source| messages(source, last));

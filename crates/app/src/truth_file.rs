@@ -8,8 +8,8 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
-/// File with one JSON object per part, in the order of landing, and at the end the parts that never landed. After each
-/// write the file holds whole lines only.
+/// File with one JSON object per part: each write appends its parts in the order of `seq`, the last one also the parts
+/// that never landed. After each write the file holds whole lines only.
 pub struct TruthFile<'a> {
     path: &'a Path,
     file: File,

@@ -1,4 +1,5 @@
-//! Writes man pages and shell completions for a package. A program of its own, so that `relayrig` carries no generator.
+//! Writes man pages and shell completions for a package; a program of its own, so that `relayrig` contains no
+//! generator.
 
 use anyhow::Context;
 use clap::{CommandFactory, Parser};
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Writes a man page for each command and completions for bash, zsh and fish.
 #[derive(Debug, Parser)]
 struct Args {
-    /// Folder to fill; made if it is missing
+    /// Folder to fill; created if missing
     folder: PathBuf,
 }
 
@@ -35,7 +36,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    /// Returns the names of a command's page and of the pages of its subcommands.
+    /// Returns the file names of a command's page and of the pages of all its subcommands.
     fn pages(command: &clap::Command, name: &str) -> Vec<String> {
         let below = command.get_subcommands().filter(|it| !it.is_hide_set());
         let below = below.flat_map(|it| pages(it, &format!("{name}-{}", it.get_name())));

@@ -1,4 +1,4 @@
-//! Types of answers: each describes its media type and its schema in the OpenAPI document.
+//! Types of answers. Each type describes its media type and its schema in the OpenAPI document.
 
 use super::api::Operation;
 use super::error::ApiError;

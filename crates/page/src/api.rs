@@ -37,13 +37,13 @@ pub(super) struct Operation {
     pub answer: (&'static str, Value),
     /// Statuses of the refusals.
     pub refusals: BTreeSet<u16>,
-    /// Named schemas that others refer to.
+    /// Schemas by name, to which other schemas refer.
     pub schemas: BTreeMap<String, Value>,
 }
 
 impl Operation {
-    /// Keeps the schema of `T` and the schemas that it refers to. Returns a reference to the schema of `T`; for a list,
-    /// an optional value or any JSON, returns the schema itself.
+    /// Keeps the schema of `T` and every schema to which it refers. Returns a reference to the schema of `T`; for a
+    /// list, an optional value or any JSON, returns the schema itself.
     pub fn schema_of<T: ToSchema>(&mut self) -> Value {
         let mut named = Vec::new();
         T::schemas(&mut named);
@@ -58,7 +58,7 @@ impl Operation {
         answer
     }
 
-    /// Keeps named schemas; asserts that no name has two different ones.
+    /// Keeps named schemas; asserts that no name has two different schemas.
     fn keep(&mut self, named: impl IntoIterator<Item = (String, Value)>) {
         for (name, schema) in named {
             let before = self.schemas.insert(name.clone(), schema);
@@ -74,7 +74,7 @@ pub(super) trait Input {
     fn describe(_operation: &mut Operation) {}
 }
 
-/// A handler whose types describe it in the OpenAPI document.
+/// A handler whose argument and answer types describe its route in the OpenAPI document.
 pub(super) trait Endpoint<T> {
     fn operation() -> Operation;
 }
@@ -112,12 +112,12 @@ pub(super) struct Route<S = AppState> {
     pub method: Method,
     pub about: &'static str,
     pub operation: Operation,
-    /// Weakest role that may use the route; `None` when it needs no login.
+    /// Weakest role that may use the route; `None` when the route needs no login.
     pub role: Option<Role>,
     pub handler: MethodRouter<S>,
 }
 
-/// Statuses of a route that reads the history: not found, failed, locked.
+/// Statuses of refusals of a route that reads the history: not found, failed, locked.
 const OF_HISTORY: &[u16] = &[404, 500, 503];
 
 impl<S: Clone + Send + Sync + 'static> Route<S> {
@@ -166,13 +166,13 @@ impl<S: Clone + Send + Sync + 'static> Route<S> {
         Self::new(path, Method::Post, about, (&handler, routed))
     }
 
-    /// Adds refusals to those that the types of the handler imply.
+    /// Adds statuses of refusals to those that the types of the handler imply.
     pub fn refuses(mut self, statuses: &[u16]) -> Self {
         self.operation.refusals.extend(statuses);
         self
     }
 
-    /// Returns the route below `prefix`, whose parameters `P` describes.
+    /// Moves the route below `prefix`; `P` describes the path parameters of `prefix`.
     pub fn below<P: IntoParams>(mut self, prefix: &str) -> Self {
         self.path = format!("{prefix}{}", self.path).into();
         let own = P::into_params(|| Some(ParameterIn::Path));
@@ -259,7 +259,7 @@ pub(super) fn routes() -> Vec<Route> {
     routes
 }
 
-/// Returns the routes that a history answers, be it that of a rig or a database with many.
+/// Returns the routes that read histories, of one rig or of all rigs in a database.
 pub(super) fn of_history<S>() -> Vec<Route<S>>
 where
     S: Clone + Send + Sync + 'static,

@@ -1,9 +1,9 @@
 //! Approval of a recipe by a second engineer, where `[recipes] approval` of `rig.toml` requires it.
 //!
-//! A text needs the signatures of two engineers: one who saved it and another who approved it, or two who approved it
-//! when a file was edited by hand. Signatures are lines of the audit of orders with the hash of the text, so a text
-//! that changes in any way has none. Whether a lot may use a recipe is decided when it starts (`admission.rs` of crate
-//! `app`).
+//! The text of a recipe needs the signatures of two engineers: one who saved the text and another who approved it, or,
+//! for a file edited by hand, two who approved it. Signatures are lines of the audit of orders with the hash of the
+//! text, so a text that changes in any way has none. `admission.rs` of crate `app` checks the signatures when a lot
+//! starts.
 
 use super::access::{Login, Register, Role, access_path, audited, note};
 use super::asked::{Author, Body};
@@ -22,7 +22,7 @@ use std::path::Path;
 use texts::Message;
 use utoipa::ToSchema;
 
-/// Approval of the newest revision of a recipe.
+/// Request to approve the newest revision of a recipe.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Approve {
@@ -33,17 +33,17 @@ pub(super) struct Approve {
     hash: String,
 }
 
-/// Approval of a revision: the engineers who saved or approved it.
+/// State of the approval of a revision: the engineers who saved or approved the revision.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ApprovalState {
     /// True when a lot may use the revision, because enough engineers saved or approved it.
     approved: bool,
-    /// Engineers who saved or approved it, in order of time.
+    /// Engineers who saved or approved the revision, in order of time.
     signatures: Vec<Signature>,
 }
 
 impl ApprovalState {
-    /// Returns the approval of a revision; `None` in a plant that requires none.
+    /// Returns the approval of a revision; `None` in a plant that requires no approval.
     pub fn read(wanted: Approval, db: &Path, of: &Revision) -> Result<Option<Self>, ApiError> {
         match wanted {
             Approval::None => return Ok(None),

@@ -1,5 +1,5 @@
-//! Inputs of routes: query strings, bodies, logged-in persons. Each type reads its part of the request and describes it
-//! in the OpenAPI document, so that the two cannot differ.
+//! Inputs of routes: query strings, bodies, logged-in persons. Each type both reads its part of the request and
+//! describes it in the OpenAPI document, so that document and program cannot differ.
 
 use super::access::Person;
 use super::api::{Input, Operation};
@@ -20,13 +20,13 @@ use tokio::time::timeout;
 use utoipa::openapi::path::{Parameter, ParameterIn};
 use utoipa::{IntoParams, ToSchema};
 
-/// Members of the query string: a struct, or a tuple of structs. The router refuses members that are in none of them.
+/// Members of the query string: a struct, or a tuple of structs. The router refuses a member that no struct has.
 #[derive(Debug)]
 pub(super) struct Asked<T>(pub T);
 
 /// Largest body of a request, bytes.
 pub(super) const BODY_LIMIT: usize = 16 * 1024;
-/// Longest time that a client may take to send its body.
+/// Longest time that a client may take to send the body of a request.
 pub(super) const BODY_TIME: Duration = Duration::from_secs(10);
 /// The character U+0000 in JSON.
 const NUL: &[u8] = b"\\u0000";
@@ -39,7 +39,7 @@ pub(super) struct Body<T>(pub T);
 #[derive(Debug)]
 pub(super) struct Author {
     pub person: Person,
-    /// Network address; empty when unknown.
+    /// Network address of the client; empty when unknown.
     pub origin: String,
 }
 

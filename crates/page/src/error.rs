@@ -26,7 +26,7 @@ pub(super) enum ApiError {
     /// 405; the header `Allow` lists the methods of the path.
     #[error("{path} does not take {method}")]
     WrongMethod { path: String, method: Method },
-    /// 403: a page of another site sent an order; `found` is the header that shows it.
+    /// 403: a page of another site sent an order; `found` is the header that reveals this.
     #[error("orders are taken from this rig's own page only; found {found}")]
     CrossSite { found: String },
     /// 401: the request has no valid session.
@@ -35,17 +35,17 @@ pub(super) enum ApiError {
     /// 401: name or password is wrong; the answer does not say which.
     #[error("{}", refusal("wrong_password").say(Lang::En))]
     WrongPassword,
-    /// 401: the set-up code is wrong, or there is an engineer.
+    /// 401: the set-up code is wrong, or an engineer exists already.
     #[error("{}", refusal("wrong_code").say(Lang::En))]
     WrongCode,
     /// 403: the role of the person, `found`, is weaker than `needed`.
     #[error("{}", not_allowed(*.found, *.needed).say(Lang::En))]
     NotAllowed { found: Role, needed: Role },
-    /// 429; the header `Retry-After` gives the time in seconds.
+    /// 429: too many wrong passwords; the header `Retry-After` gives the wait in seconds.
     #[error("{}", too_many_tries(*.wait).say(Lang::En))]
     TooManyTries { wait: Duration },
     /// 400 for a malformed name or password, 404 for an unknown person, 409 for a taken name and for the last engineer;
-    /// the status of the history when its audit does not open; otherwise 500.
+    /// the status of [`Self::History`] when the audit of orders does not open; otherwise 500.
     #[error(transparent)]
     Access(#[from] AccessError),
     /// 400, 408, 413 or 415: the body cannot be read.
@@ -63,20 +63,20 @@ pub(super) enum ApiError {
     /// 400 for a malformed question, 404 for a lot, run or part that does not exist, otherwise as [`Self::History`].
     #[error(transparent)]
     Inquiry(#[from] InquiryError),
-    /// 404 without a history file, 503 when it is locked or the database does not answer, otherwise 500.
+    /// 404 without a history file, 503 when the file is locked or the database does not answer, otherwise 500.
     #[error(transparent)]
     History(#[from] HistoryError),
-    /// 404 for an unknown recipe or revision, otherwise 500: a file of the configuration is faulty.
+    /// 404 for an unknown recipe or revision; 500 for a faulty file of the configuration.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// 400 with the key of a refused value, 404 for an unknown recipe, 409 when the change is not based on the newest
-    /// revision.
+    /// revision or the name is taken, 500 when a file cannot be read or written.
     #[error("{refused}")]
     Revision { refused: ConfigError },
     /// 409: the person may not approve this revision; `code` says why.
     #[error("{}", refusal(.code).say(Lang::En))]
     NotApproved { code: &'static str },
-    /// 400, 404, 409 or 503: a plan for tooling, or a change of one, is refused.
+    /// 400, 404, 409 or 503: the server refuses a plan for tooling, or a change of a plan.
     #[error("{}", .why.say(Lang::En))]
     Plan { status: StatusCode, why: Message },
     /// 500: a blocking task panicked or was cancelled.
@@ -104,7 +104,7 @@ pub(super) struct Refusal {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     member: Option<String>,
-    /// Key of a recipe whose value is refused.
+    /// Key in the recipe whose value the rig refuses.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(nullable = false)]
     key: Option<String>,
@@ -209,7 +209,7 @@ impl ApiError {
         }
     }
 
-    /// Returns the refusal in both languages. A mistake that only programs make has a general Chinese text.
+    /// Returns the refusal in both languages. All mistakes that only a program can make share one Chinese text.
     pub fn message(&self) -> Message {
         let said = |code| refusal(code).with("said", self);
         match self {

@@ -5,8 +5,8 @@
 //! | `view` | the whole view | on connecting; on change, at most 20 times a second; otherwise once a second |
 //! | `beat` | `{"alive":true}` | each second; `false` after the controller has ended |
 //!
-//! A browser that receives nothing for three seconds, or `"alive":false`, has old values and must show them as such. A
-//! slow browser skips views and never gets an older one after a newer one. After the end of a stream a browser waits 1
+//! A client that receives nothing for three seconds, or `"alive":false`, has old values and must show them as old. A
+//! slow client skips views and never gets an older view after a newer one. After the end of a stream a browser waits 1
 //! s before it connects again (`retry`). The stream ends with the program.
 
 use super::answers::{As, Events};
@@ -71,7 +71,7 @@ fn event_of(view: &View) -> Bytes {
 /// The stream of one browser.
 struct Feed {
     view: watch::Receiver<View>,
-    /// The last view as an event, which all streams share.
+    /// The last view as the bytes of an event, which all streams share.
     events: watch::Receiver<Bytes>,
     over: Pin<Box<dyn Future<Output = ()> + Send>>,
     has_begun: bool,
@@ -123,8 +123,8 @@ async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View
     std::future::pending().await
 }
 
-/// Returns true when the views differ at most in wall-clock times, which each turn of the cycle changes; copies those
-/// times from `view` to `sent`.
+/// Returns true when the views differ at most in wall-clock times, which change with every view of the cycle; copies
+/// those times from `view` to `sent`.
 fn same_content(view: &View, sent: &mut View) -> bool {
     sent.at_us = view.at_us;
     sent.machine.phases_s.clone_from(&view.machine.phases_s);

@@ -1,16 +1,17 @@
-//! The page of many rigs: read only, from a database with their histories.
+//! The page of many rigs, which only reads, from a database with the histories of the rigs.
 //!
 //! | route | answer |
 //! |---|---|
 //! | `GET /`, `GET /page/...` | the page of all rigs; the script of another page |
-//! | `GET /api/fleet` | what each rig does and made |
+//! | `GET /api/fleet` | what each rig is doing and has made |
 //! | `GET /api/history/...` | the history of all rigs, as `history ... --from` gives it |
 //! | `GET /rigs/SITE/RIG/` and the same below it | the page and the history of one rig, down to the raw replies |
 //! | `POST /api/quality/grr` | a gauge study of the readings in the body; stores nothing |
 //! | `GET /api/openapi.json` | the OpenAPI document |
 //!
-//! All clients share one overview, which arrives through a watch channel; a route of the history opens a reader of its own.
-//! There are no sessions: nothing here changes anything, and orders and audits of people stay on the page of the rig.
+//! All clients share one overview, which arrives through a watch channel; a route of the history opens a reader of its
+//! own. There are no sessions, because no route changes anything; orders and the audit of people stay on the page of
+//! the rig.
 
 use super::api::{Route, document, of_history};
 use super::history::{Archives, Readers};
@@ -31,7 +32,7 @@ use utoipa::IntoParams;
 /// Links between the server and the rest of the program.
 #[derive(Debug, Clone)]
 pub struct FleetShared {
-    /// What each rig does and made.
+    /// What each rig is doing and has made.
     pub overview: watch::Receiver<Overview>,
     /// The histories.
     pub archives: Arc<dyn Archives>,

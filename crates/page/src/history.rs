@@ -2,9 +2,10 @@
 //!
 //! `api.rs` lists the routes and their members; `members.rs` has the parts of the query strings.
 //!
-//! `lang` is `zh` or `en`; when absent, the header `Accept-Language` decides, and without it the language is English. A
-//! route answers 400 to a member that it does not use, with its name, and 404 to an unknown lot, run or part. A few
-//! readers at a time work on blocking threads; they do not delay the writer.
+//! `lang` is `zh` or `en`; when absent, the header `Accept-Language` decides, and without that header the language is
+//! English. A route answers 400 to a member that it does not use, with the name of the member, and 404 when it needs a
+//! lot, run or part that does not exist. At most four readers at a time work on blocking threads; they do not delay the
+//! writer.
 
 pub(super) mod compared;
 pub(super) mod export;
@@ -113,10 +114,10 @@ pub(super) async fn yields(readers: Readers, Asked(span): Asked<TimeSpan>) -> Js
     readers.read(read).await.map(Json)
 }
 
-/// Member of `list` besides the runs.
+/// Member that `list` takes besides [`Runs`].
 #[derive(Debug, Deserialize, IntoParams)]
 pub(super) struct OpenedQuery {
-    /// Only runs that were opened at this time or later: RFC 3339, or local as `2026-11-22`, `today`, `-8h`.
+    /// Only runs that began at this time or later: RFC 3339, or local as `2026-11-22`, `today`, `-8h`.
     #[param(value_type = Option<String>, example = "2026-11-22T00:00:00Z")]
     since: Option<Moment>,
 }
@@ -130,7 +131,7 @@ pub(super) struct PartQuery {
     /// Number of the part.
     #[param(example = 1)]
     seq: u64,
-    /// Number of the run; all runs without it.
+    /// Number of the run; all runs when absent.
     #[param(example = 1)]
     run: Option<u32>,
     /// `lot` (when absent) or `golden`.
@@ -138,13 +139,13 @@ pub(super) struct PartQuery {
     kind: Option<String>,
 }
 
-/// Members of `orders` besides the filter.
+/// Members that `orders` takes besides the filter.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(super) struct AuditQuery {
-    /// Name at login; all people without it.
+    /// Name at login; all people when absent.
     #[param(example = "li")]
     who: Option<String>,
-    /// Word of the order; all orders without it.
+    /// Word of the order; all orders when absent.
     #[param(example = "start")]
     order: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! Language of a printed page: that of the request.
+//! Language of a printed page: the language that the request asks for.
 
 use super::api::Input;
 use axum::extract::FromRequestParts;
@@ -7,7 +7,7 @@ use axum::http::request::Parts;
 use history::report::Lang;
 use std::convert::Infallible;
 
-/// Language that the header `Accept-Language` prefers; English without one.
+/// Language that the header `Accept-Language` prefers; English without this header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Preferred(Lang);
 
@@ -17,7 +17,8 @@ impl Preferred {
         asked.unwrap_or(self.0)
     }
 
-    /// Returns the first language of the list with the greatest weight (`q`, 1 when absent); ignores other languages.
+    /// Returns the first language of the list with the greatest weight (`q`, 1 when absent); ignores all languages but
+    /// English and Chinese.
     fn of(header: &str) -> Self {
         let mut best = (Lang::En, 0.0);
         for entry in header.split(',') {
@@ -37,7 +38,7 @@ impl Preferred {
     }
 }
 
-/// Returns the language of a tag such as `zh-CN`, without country and script.
+/// Returns the language of a tag such as `zh-CN`, without region and script.
 fn primary(tag: &str) -> &str {
     tag.split('-').next().unwrap_or_default()
 }

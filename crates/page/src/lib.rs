@@ -1,13 +1,13 @@
 //! The HTTP server: the pages, the view of the machine as JSON and as events, the history, figures for Prometheus.
 //!
-//! - Clients only read the state of the rig. They change it by *orders*, which the station takes or refuses with the
-//!   reason in its next turn.
-//! - The view comes through a watch channel, so that the cycle never waits for a client: a slow one skips to the latest
-//!   view, and views do not queue.
+//! - Clients read the state of the rig, and change it only by *orders*. In the next pass of the control cycle the
+//!   station accepts each order or refuses it with a reason.
+//! - The view comes through a watch channel, so that the cycle never waits for a client: a slow client skips to the
+//!   latest view, and views do not queue.
 //! - A route refuses with JSON: the status in words, the reason in English and Chinese, its code (`error.rs`).
 //! - A body has at most 16 kB. The server limits connections in number and time (`server.rs`). A request that changes
 //!   anything must not come from a page of another site.
-//! - When the program ends, every event stream ends, and connections still open are cut after [`GRACE`].
+//! - When the program ends, every event stream ends, and the server cuts connections still open after [`GRACE`].
 //!
 //! | route | answer |
 //! |---|---|
@@ -27,7 +27,8 @@
 //! | `GET /api/openapi.json` | the OpenAPI document |
 //! | `GET /metrics` | Prometheus text |
 //!
-//! Reading needs no login; orders and revisions do (`sessions.rs`). A route refuses every member that it does not take.
+//! Reading needs no login; orders and revisions need one (`sessions.rs`). A route refuses every member that it does not
+//! take.
 //!
 //! The page of many rigs has routes of its own, which only read (`fleet.rs`).
 //!
@@ -84,13 +85,13 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 
-/// Time that open connections get to finish when the program ends.
+/// Time for which open connections may finish when the program ends.
 pub const GRACE: Duration = Duration::from_secs(1);
 
 /// Links between the server and the rest of the program.
 #[derive(Debug, Clone)]
 pub struct Shared {
-    /// The latest view; after its sender is dropped, beats say that the controller has ended.
+    /// The latest view; once its sender is gone, beats say that the controller has ended.
     pub view: watch::Receiver<machine::view::View>,
     /// The history file, which may not exist yet.
     pub db: PathBuf,
@@ -104,7 +105,7 @@ pub struct Shared {
     pub traffic: Traffic,
     /// Makes plans for tooling.
     pub plans: Arc<dyn PlanMaker>,
-    /// Queue to the cycle, which answers each order in its next turn.
+    /// Queue to the cycle, which answers each order in its next pass.
     pub orders: mpsc::Sender<OrderRequest>,
 }
 

@@ -18,7 +18,7 @@ use utoipa::ToSchema;
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Login {
-    /// Name, as added by `relayrig user`.
+    /// Name of the person, case-sensitive.
     #[schema(example = "li")]
     user: String,
     #[schema(format = Password)]

@@ -1,7 +1,7 @@
 //! `/api/lots` and `/api/wear`, for the page of lots.
 //!
 //! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot
-//! forbids it. For the lot under way, the buttons in the view tell which orders are possible.
+//! forbids the order. For the lot under way, the buttons in the view tell which orders are possible.
 
 use super::asked::{Asked, members};
 use super::error::{ApiError, JsonResult};

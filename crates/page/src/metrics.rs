@@ -35,7 +35,7 @@ fn text(scrape: Scrape) -> String {
     let mut registry = Registry::default();
     registry.register_collector(Box::new(scrape));
     let mut text = String::new();
-    // `encode` would add the end mark of OpenMetrics, which this format does not have.
+    // `encode` would add `# EOF`, the end mark of OpenMetrics, which the Prometheus format does not have.
     encode_registry(&mut text, &registry).expect("writing to a String cannot fail");
     text
 }
@@ -96,7 +96,7 @@ fn instruments(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     out.known("relayrig_instrument_failures", help, failures)
 }
 
-/// Writes what each database of `fleet.toml` lacks.
+/// Writes the parts that each database of `fleet.toml` lacks, and the state of sending.
 fn fleet(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     fn of(it: &FleetView) -> [Label<'_>; 1] {
         [("target", it.url.as_str())]

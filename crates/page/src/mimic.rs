@@ -1,9 +1,9 @@
-//! The machine to scale, as SVG: the front view at the top, the view from above below it, with a common x axis.
+//! The machine to scale, as SVG: the front view, and below it the view from above, with a common x axis.
 //!
 //! Units of the drawing are millimetres. A body that rides on actuators is a group with
-//! `data-rides='[["sort_z",0,-1], ..]'`: actuator, and the way of the group to the right and down per millimetre of
-//! stroke. The drawing has a part in every place that can hold one. The page moves the groups and shows the parts from
-//! `view.machine`.
+//! `data-rides='[["sort_z",0,-1], ..]'`: actuator, and millimetres that the group moves to the right and down per
+//! millimetre of stroke. The drawing has a part in every place that can hold one. From `view.machine` the page moves
+//! the groups and shows the parts.
 //!
 //! Bodies are drawn back to front: the lowest first in the view from above, the farthest first in the front view.
 
@@ -47,7 +47,7 @@ impl Side {
         }
     }
 
-    /// Projects a displacement in space to the drawing; returns how far it goes to the right and down, mm.
+    /// Projects a displacement in space onto the drawing; returns its components to the right and down, mm.
     fn shift(self, [x, y, z]: [f64; 3]) -> (f64, f64) {
         match self {
             Self::Front => (x, -z),

@@ -1,8 +1,8 @@
 //! `POST /api/orders`: hands orders to the cycle.
 //!
-//! The cycle answers in its next turn: it takes the order, or refuses it with the reason in English and Chinese (409).
-//! It answers a motion by hand when the motion has ended. An order that cannot be read gets 400 and leaves no trace.
-//! The server stores no order: when the queue is full it refuses the order. An order that the role of the person
+//! The cycle answers in its next pass: it accepts the order, or refuses it with the reason in English and Chinese
+//! (409). The answer to a motion by hand comes when the motion has ended. A malformed order gets 400 and leaves no
+//! trace. The server stores no order, and refuses one when the queue is full. An order that the role of the person
 //! forbids also goes to the cycle, marked as denied, and the cycle writes it into the audit. Orders without a login
 //! leave no trace.
 
@@ -21,7 +21,7 @@ use texts::Message;
 use tokio::sync::oneshot;
 use utoipa::ToSchema;
 
-/// Largest number of orders that wait for the next turn of the cycle; a further one is refused.
+/// Greatest number of orders that wait for the next pass of the cycle; the server refuses a further order.
 pub const WAITING: usize = 16;
 
 /// Body of the answer to an accepted order.
@@ -69,7 +69,7 @@ fn needs(word: &str) -> Role {
     }
 }
 
-/// Writes into the schema of each order which role it needs, as `x-role`, and that it takes no other member.
+/// Writes into the schema of each order the role that the order needs, as `x-role`, and forbids unknown members.
 pub(super) fn describe_roles(schemas: &mut BTreeMap<String, Value>) {
     let variants = schemas
         .get_mut("Order")

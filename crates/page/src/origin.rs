@@ -1,4 +1,4 @@
-//! Refuses orders that a page of another site makes a browser send.
+//! Refuses an order that a page of another site makes a browser send to this rig.
 //!
 //! A browser sends `Origin` with every POST, and the script of a page cannot forge it. An order passes when
 //! - `Sec-Fetch-Site`, if present, is `same-origin` or `none`, and
@@ -7,7 +7,7 @@
 //!   `.internal`. This defeats DNS rebinding, by which a public name resolves to this rig. Over `https://` the
 //!   certificate defeats it: a browser accepts no name that the certificate lacks.
 //!
-//! A request with neither header comes from a program that is no browser, and passes.
+//! A request with neither `Sec-Fetch-Site` nor `Origin` comes from a program that is no browser, and passes.
 
 use super::error::ApiError;
 use axum::extract::ConnectInfo;

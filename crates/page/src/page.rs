@@ -2,8 +2,8 @@
 //! follows when a browser first opens that page. Nothing comes from another host.
 //!
 //! The program makes and compresses each answer once, from the files in `page/` and the catalogue of texts. The content
-//! security policy lets a browser run the inline script, which it checks by a hash, and the scripts that this rig
-//! sends.
+//! security policy lets a browser run only the inline script, which the browser checks by a hash, and the scripts that
+//! this rig sends.
 
 mod compressed;
 mod kinds;
@@ -84,7 +84,7 @@ static FLEET_PAGE: LazyLock<CompressedBody> = LazyLock::new(|| {
 });
 static FLEET_POLICY: LazyLock<String> = LazyLock::new(|| policy(FLEET_SCRIPT));
 
-/// Puts the parts of a page into its frame.
+/// Returns the answer made of `frame` with style, texts and scripts filled in.
 fn whole(frame: &str, script: &str, words: &str, scripts: &str) -> CompressedBody {
     let page = frame
         .replace("/*look*/", LOOK)
@@ -105,7 +105,7 @@ fn policy(script: &str) -> String {
     )
 }
 
-/// Members of `GET /`, which the script of the page reads.
+/// Members of `GET /`; only the script of the page reads them.
 #[derive(Debug, Deserialize, IntoParams)]
 #[expect(dead_code, reason = "the script of the page reads them")]
 pub(super) struct PageOptions {

@@ -1,6 +1,6 @@
 //! `GET /api/people`, `POST /api/people/change`: an engineer reads and changes people.
 //!
-//! The audit of orders gets every change that a logged-in person tries, with its outcome, and no password.
+//! The audit of orders gets every change that a logged-in person tries, with the outcome but without passwords.
 
 use super::access::{Entry, PersonChange, Role};
 use super::asked::{Author, Body};
@@ -15,7 +15,7 @@ use utoipa::ToSchema;
 /// Answer to a change.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct Changed {
-    /// The password, if the request gave none and the rig drew one.
+    /// The new password, if the rig drew it because the request gave none.
     password: Option<String>,
 }
 

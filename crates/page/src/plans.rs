@@ -1,8 +1,8 @@
 //! `/api/plans/...`: plans by which people take tooling off and put it on.
 //!
-//! Reading a plan and trying one need no login. A maintainer starts a plan, ticks off its steps, takes back the last
-//! tick, and abandons it; the audit of orders records every attempt of a logged-in person. The server makes one plan at
-//! a time, on a thread that never drives the rig, and answers within [`LIMIT`].
+//! Reading or previewing a plan needs no login. A maintainer starts a plan, ticks off its steps, takes back the last
+//! tick, and abandons the plan; the audit of orders records every attempt of a logged-in person. The server makes one
+//! plan at a time, on a thread that never drives the rig, and answers within [`LIMIT`].
 
 mod shown;
 
@@ -129,14 +129,14 @@ pub(super) async fn start(
     .await
 }
 
-/// A step of a plan under way.
+/// Body that names a step of a plan under way.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Tick {
     /// Number of the plan.
     #[schema(example = 1)]
     plan: i64,
-    /// Number of the step, from 1: the next one to tick it off, the last one done to take it back.
+    /// Number of the step, from 1: to tick off, the next step; to take back a tick, the last step done.
     #[schema(example = 1)]
     step: usize,
 }
@@ -173,7 +173,7 @@ pub(super) async fn untick(
     .await
 }
 
-/// End of a plan whose steps are not all done.
+/// Request to end a plan whose steps are not all done.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Abandon {
@@ -210,7 +210,7 @@ async fn made(app: &AppState, question: PlanQuestion) -> Result<Box<ToolingPlan>
         return Err(busy(Message::new("refusal", "plan_busy")));
     };
     let plans = Arc::clone(&app.shared.plans);
-    // The next plan may begin when this work ends, even if the client has gone by then.
+    // Only the end of this work allows the next plan, even if the client has gone before.
     let work = blocking(move || {
         let answer = plans.make(&question).map_err(refused);
         drop(place);

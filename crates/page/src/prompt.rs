@@ -1,4 +1,4 @@
-//! `GET /api/picture`: the picture of the prompt that waits at the rig. The view has its text and its choices.
+//! `GET /api/picture`: the picture of the prompt that waits at the rig. The view has the prompt's text and choices.
 
 use super::error::{ApiError, JsonResult, blocking};
 use super::router::App;

@@ -1,8 +1,8 @@
 //! `/api/recipes/...`: recipes with their revisions, and the route that saves a new revision.
 //!
 //! Reading needs no login; a revision needs an engineer. The audit of orders gets every attempt of a logged-in person
-//! with its outcome. The history is opened before the change, so that no revision is made without an audit.
-//! `approval.rs` adds the engineers who saved or approved a revision.
+//! with its outcome. The server opens the audit before the change, so that no revision escapes the audit. `approval.rs`
+//! adds the engineers who saved or approved a revision.
 
 use super::access::{Person, Role, audited};
 use super::approval::ApprovalState;
@@ -32,13 +32,13 @@ pub(super) struct ListedRecipe {
     title_zh: String,
     /// Number of the newest revision; null for a faulty recipe.
     number: Option<u32>,
-    /// SHA-256 of the text of that revision.
+    /// SHA-256 of the text of the newest revision.
     hash: Option<String>,
-    /// Time at which that revision was saved, microseconds since 1970 UTC.
+    /// Time at which the newest revision was saved, microseconds since 1970 UTC.
     saved_at_us: Option<i64>,
-    /// False while the plant requires an approval that this revision lacks.
+    /// False while the plant requires an approval that the newest revision lacks.
     approved: bool,
-    /// Error that keeps the recipe from loading; absent for a good recipe.
+    /// Error that keeps the recipe from loading; null for a good recipe.
     trouble: Option<String>,
 }
 
@@ -84,7 +84,7 @@ fn listed(
 pub(super) struct ShownRevision {
     #[serde(flatten)]
     revision: Revision,
-    /// Approval of the revision; null in a plant that requires none.
+    /// Approval of the revision; null in a plant that requires no approval.
     approval: Option<ApprovalState>,
     /// Prompts of every lot, from `lot.toml`; the prompts of the recipe are in `fields`.
     prompts_of_lots: Vec<Prompt>,
@@ -130,7 +130,7 @@ pub(super) struct CardQuery {
     /// Name of the recipe.
     #[param(example = "jzc-22f-012")]
     name: String,
-    /// Language, `zh` or `en`; when absent, that of `Accept-Language`, without it English.
+    /// Language, `zh` or `en`; when absent, the language of `Accept-Language`, else English.
     #[param(inline)]
     lang: Option<Lang>,
 }

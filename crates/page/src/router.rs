@@ -45,7 +45,7 @@ impl FromRef<AppState> for Sessions {
 /// Extractor by which a route receives [`AppState`].
 pub(super) type App = State<AppState>;
 
-/// Returns the router of all routes; starts the task that writes the events of all streams.
+/// Returns the router of all routes; starts the task that writes views as events for all streams.
 pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
     let (publisher, events) = watch::channel(Bytes::new());
     let app = AppState {
@@ -61,7 +61,7 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
     routed(api::routes()).with_state(app)
 }
 
-/// Returns the router of some routes, with the refusals and headers that all have.
+/// Returns the router of `routes`, with the refusals and headers common to all routes.
 pub(super) fn routed<S: Clone + Send + Sync + 'static>(routes: Vec<Route<S>>) -> Router<S> {
     routes
         .into_iter()

@@ -5,9 +5,9 @@
 //! | a connection sends no whole request header within [`FIRST`], the TLS handshake included | the connection ends |
 //! | a connection that has sent requests sends no further header within [`IDLE`] | the connection ends |
 //! | a body is not whole within [`BODY_TIME`](super::asked::BODY_TIME) | 408 |
-//! | all places are taken | the oldest connection of the lowest rank ends, see `connections.rs` |
+//! | a client connects while all places are taken | the oldest connection of the lowest rank ends (`connections.rs`) |
 //!
-//! So 500 connections that never finish a request delay no order: a new one takes the place of the oldest of them.
+//! So 500 connections that never finish a request delay no order: each new connection takes the place of the oldest.
 
 mod connections;
 mod listener;
@@ -43,7 +43,7 @@ use tower_service::Service;
 const FIRST: Duration = Duration::from_secs(10);
 /// Longest time from an answer to the next whole request header: browsers keep connections for later requests.
 const IDLE: Duration = Duration::from_secs(75);
-/// Largest request header, bytes; it bounds the memory of a connection.
+/// Largest request header, bytes; this limit bounds the memory of a connection.
 const HEADER: usize = 32 * 1024;
 /// Wait after the system refused a connection, mostly because the program has too many files open.
 const REFUSED: Duration = Duration::from_millis(100);
@@ -64,7 +64,7 @@ pub async fn serve(
     serve_routes(listener, tls, (router, sessions), ended).await;
 }
 
-/// Serves routes, as [`serve`] does; without sessions all clients are anonymous.
+/// Serves the routes of a router, as [`serve`] does; without `sessions` all clients are anonymous.
 pub(super) async fn serve_routes(
     listener: TcpListener,
     tls: Option<Tls>,
@@ -115,7 +115,7 @@ struct Server {
 impl Server {
     /// Serves a connection until it ends, is too slow, or loses its place.
     async fn hold(self, stream: TcpStream, peer: SocketAddr, (place, lost): (Place, Lost)) {
-        // With a delay (Nagle) each event would wait until the client acknowledges the one before.
+        // With Nagle's algorithm each event would wait until the client acknowledges the event before.
         let _ = stream.set_nodelay(true);
         let place = &place;
         let silent = async {
@@ -159,8 +159,8 @@ impl Server {
         let _ = connection.await;
     }
 
-    /// Answers a request. `checked` holds the last token of this connection that belongs to no session, so that the
-    /// server does not look it up again.
+    /// Answers a request. `checked` holds the last token of this connection that belongs to no session; the server does
+    /// not look up this token again.
     async fn answer(
         &self,
         request: Request<Incoming>,
@@ -191,7 +191,7 @@ async fn is_in_the_clear(stream: &TcpStream) -> bool {
     stream.peek(&mut first).await.is_ok() && first != [HANDSHAKE]
 }
 
-/// Tells a client that asked for `http://` where the page is.
+/// Tells a client that asked for `http://` that the page is at `https://`.
 async fn say_https(mut stream: TcpStream) {
     const ANSWER: &[u8] =
         b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Type: text/plain\r\n\r\n\

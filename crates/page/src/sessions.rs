@@ -1,4 +1,4 @@
-//! Sessions: the person behind a request, which every change needs.
+//! Sessions. A session tells which person sent a request; every change needs a session.
 //!
 //! | client | sends | may |
 //! |---|---|---|
@@ -6,9 +6,9 @@
 //! | page | cookie `relayrig_session`: `HttpOnly`, `SameSite=Strict` | what the role allows |
 //! | script | `Authorization: Bearer TOKEN` from the answer to `POST /api/login` | what the role allows |
 //!
-//! An expired session counts as none: 401. A role that is too weak gets 403 with the role needed. Browsers do not send
-//! the cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie of a login over https is
-//! `Secure`.
+//! An expired session counts as no session: 401. A role that is too weak gets 403 with the role needed. Browsers do not
+//! send the cookie with requests of other sites, and `origin.rs` refuses such requests as well. The cookie of a login
+//! over https is `Secure`.
 //!
 //! `sessions/proof.rs` opens a session when a person proves a password or the set-up code.
 
@@ -36,7 +36,7 @@ pub struct Sessions(Arc<Inner>);
 #[derive(Debug)]
 struct Inner {
     register: Mutex<Register>,
-    /// Lock held during a login, which takes 19 MiB and 20 ms of a core: logins run one at a time, so that another
+    /// Lock that a login holds while it takes 19 MiB and 20 ms of a core. Logins run one at a time, so that another
     /// request waits for one login at most.
     login: tokio::sync::Mutex<()>,
     /// Path of the history, which holds the audit of orders.
@@ -68,7 +68,7 @@ impl Sessions {
         Ok(self.0.setup.is_some() && !engineer)
     }
 
-    /// Ends the session of the request; does nothing without one.
+    /// Ends the session of the request; does nothing for a request without a session.
     pub(super) async fn log_out(&self, headers: &HeaderMap) -> Result<(), ApiError> {
         let Some(token) = token(headers) else {
             return Ok(());
@@ -76,7 +76,7 @@ impl Sessions {
         self.with(move |register| register.log_out(&token)).await
     }
 
-    /// Returns the person of the session; `None` without a valid one.
+    /// Returns the person of the session; `None` without a valid session.
     pub(super) async fn who(&self, headers: &HeaderMap) -> Result<Option<Person>, ApiError> {
         let Some(token) = token(headers) else {
             return Ok(None);
@@ -104,8 +104,8 @@ impl Sessions {
         blocking(move || work(&mut inner.register())).await
     }
 
-    /// Runs `work` over the file of people, and notes it in the audit of orders as [`audited`] does. While the audit
-    /// waits for a locked history, other requests find their sessions.
+    /// Runs `work` over the file of people, and notes it in the audit of orders as [`audited`] does. Locks the file of
+    /// people only during `work`, so that requests find their sessions while the audit waits for a locked history.
     pub(super) async fn audited<T: Send + 'static>(
         &self,
         by: By,
@@ -137,8 +137,8 @@ pub(super) fn require_role(person: &Person, needed: Role) -> Result<(), ApiError
     Ok(())
 }
 
-/// Returns the value of `Set-Cookie` that sets the token, or deletes the cookie when there is none; over https the
-/// browser then never sends it in the clear.
+/// Returns the value of `Set-Cookie` that sets the token, or deletes the cookie when `token` is `None`. A browser sends
+/// a cookie that it got over https back over https only.
 pub(super) fn cookie(token: Option<&str>, headers: &HeaderMap) -> String {
     let age = if token.is_some() { SESSION_S } else { 0 };
     let token = token.unwrap_or_default();

@@ -54,7 +54,7 @@ struct Fixture {
     router: Router,
     db: PathBuf,
     sessions: Sessions,
-    /// Code for the first engineer, whom the file lacks.
+    /// Code that adds the first engineer; the file of people has none yet.
     setup: SetupCode,
     /// Token of an operator's session.
     token: String,

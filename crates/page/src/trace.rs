@@ -20,7 +20,7 @@ const MOST: u64 = 1000;
 /// Function that returns the last messages of every line; its argument is the largest number of messages per line.
 type ReadTraffic = dyn Fn(usize) -> Vec<LineTraffic> + Send + Sync;
 
-/// Access to the traffic of the lines; clones read the same lines.
+/// Access to the last traffic of the lines; clones read the same lines.
 #[derive(Clone)]
 pub struct Traffic(Arc<ReadTraffic>);
 

@@ -1,4 +1,4 @@
-//! The two catalogues, English and Chinese; each is parsed once.
+//! The English and the Chinese catalogue; the program parses each once.
 
 use crate::Lang;
 use fluent_bundle::concurrent::FluentBundle;
@@ -59,7 +59,7 @@ fn of(lang: Lang) -> &'static Bundle {
     }
 }
 
-/// Returns true when the English catalogue has the text; a test makes sure that the Chinese one then has it too.
+/// Returns true when the English catalogue has the text; a test holds the Chinese catalogue to the same texts.
 pub(crate) fn has(id: &str) -> bool {
     EN_BUNDLE.has_message(id)
 }
@@ -84,7 +84,7 @@ pub(crate) fn plain_text(lang: Lang, id: &str, attribute: Option<&str>) -> &'sta
     found.unwrap_or_default()
 }
 
-/// Fills in the arguments of a text; `None` when one is missing.
+/// Fills in the arguments of a text; `None` when an argument is missing.
 pub(crate) fn filled(lang: Lang, pattern: &'static Text, args: &FluentArgs<'_>) -> Option<String> {
     let mut errors = Vec::new();
     let text = of(lang).format_pattern(pattern, Some(args), &mut errors);
@@ -106,7 +106,7 @@ pub fn attributes(lang: Lang, id: &str) -> BTreeSet<&'static str> {
     all.map(|it| it.id()).collect()
 }
 
-/// Returns the names of the arguments of a text or attribute; `None` when it does not exist.
+/// Returns the names of the arguments of a text or attribute; `None` for an unknown text or attribute.
 pub fn arguments(lang: Lang, id: &str, attribute: Option<&str>) -> Option<BTreeSet<&'static str>> {
     let elements = pattern(lang, id, attribute)?.elements.iter();
     let name = |element: &PatternElement<&'static str>| match element {

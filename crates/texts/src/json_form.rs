@@ -1,6 +1,7 @@
 //! JSON and schema of types whose texts are in the catalogue.
 
-/// Implements `Serialize` and `ToSchema` for a type by its JSON form, which `From` makes from a reference to it.
+/// Implements `Serialize` and `ToSchema` for a type through a second type, its JSON form, which must implement `From`
+/// for a reference to the first.
 #[macro_export]
 macro_rules! json_form {
     ($kind:ty, $form:ident) => {

@@ -43,7 +43,7 @@ impl Lang {
         }
     }
 
-    /// Returns the separator of a list: a comma and a blank, in Chinese the enumeration comma alone.
+    /// Returns the separator of a list: in English a comma and a blank, in Chinese the enumeration comma alone.
     pub const fn comma(self) -> &'static str {
         match self {
             Self::En => ", ",
@@ -77,8 +77,8 @@ impl Lang {
         catalogue::plain_text(self, id, Some(attribute))
     }
 
-    /// Returns the name of `code` in its family; returns `code` itself when the catalogue lacks it, because a plant may
-    /// name bins and parameter keys of its own.
+    /// Returns the name of `code` in its family. Returns `code` itself when the catalogue lacks the code, because a
+    /// plant may name bins and parameter keys of its own.
     pub fn name<'a>(self, family: &str, code: &'a str) -> &'a str {
         let id = format!("{family}-{code}");
         if catalogue::has(&id) {

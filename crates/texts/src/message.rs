@@ -1,4 +1,4 @@
-//! Messages: a code with arguments, which programs can compare and the catalogue turns into text.
+//! Messages: codes with arguments. Programs compare the codes; the catalogue turns a message into text.
 
 use crate::catalogue::Text as Pattern;
 use crate::{Lang, catalogue, json_form};
@@ -8,12 +8,12 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
-/// Arguments by name. The value of an argument in [`NAMES`] is a code; the text shows the name of this code.
+/// Arguments by name. For some names the value is a code; the text then shows the name of this code.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(transparent)]
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
-/// Arguments whose values are codes, with the family of their texts: `bin` = `coil` shows the text `bin-coil`.
+/// Arguments whose values are codes, each with the family of the codes: `bin` = `coil` shows the text `bin-coil`.
 const NAMES: [(&str, &str); 33] = [
     ("actuator", "actuator"),
     ("alarm", "alarm"),
@@ -115,8 +115,8 @@ impl Args {
             .collect()
     }
 
-    /// Returns the text that replaces `code`, the value of argument `name`; it may contain the other arguments, as
-    /// `motion-axis_bin` contains `bin`.
+    /// Returns the text that replaces `code`, the value of argument `name`. This text may use the other arguments, as
+    /// `motion-axis_bin` uses `bin`.
     fn named<'a>(&'a self, lang: Lang, name: &str, family: &str, code: &'a str) -> Cow<'a, str> {
         let id = format!("{family}-{code}");
         let case = catalogue::pattern(lang, &id, self.get(CASE));
@@ -130,7 +130,7 @@ impl Args {
     }
 }
 
-/// Returns the family of the codes that are values of the argument `name`; `None` for an argument with other values.
+/// Returns the family of the codes that argument `name` takes; `None` for an argument whose values are no codes.
 fn family(name: &str) -> Option<&'static str> {
     NAMES.iter().find(|it| it.0 == name).map(|it| it.1)
 }
@@ -172,13 +172,14 @@ impl Message {
         self
     }
 
-    /// Makes a message of family `detail`. The English text shows `said`, English words of a library, the system or the
-    /// plant; the Chinese text uses the other arguments.
+    /// Makes a message of family `detail` with `said`, English words of a library, the system or the plant. The English
+    /// text shows `said`; the Chinese text uses the other arguments.
     pub fn detail(code: &'static str, said: impl ToString) -> Self {
         Self::new("detail", code).with("said", said)
     }
 
-    /// Adds the code of `inner` as argument `name`, for which texts show the text of `inner`; adds its arguments too.
+    /// Adds the code of `inner` as argument `name`, and all arguments of `inner`; texts show the text of `inner` for
+    /// `name`.
     #[must_use]
     pub fn with_inner(mut self, name: &'static str, inner: &Self) -> Self {
         self.args = self.args.with_inner(name, inner);
@@ -218,19 +219,20 @@ impl Message {
         said.unwrap_or_default()
     }
 
-    /// Returns the text; `None` when an argument is missing, as may happen with a message that another version stored.
+    /// Returns the text; `None` when the text is unknown or an argument is missing, as may happen with a message that
+    /// another version stored.
     pub fn try_say(&self, lang: Lang) -> Option<String> {
         catalogue::filled(lang, self.pattern(lang)?, &self.args.fluent(lang))
     }
 
-    /// Returns an attribute of the text, if it has one and no argument is missing.
+    /// Returns an attribute of the text; `None` when the text lacks the attribute, or when an argument is missing.
     pub fn try_attribute(&self, lang: Lang, attribute: &str) -> Option<String> {
         let pattern = catalogue::pattern(lang, &self.id(), Some(attribute))?;
         catalogue::filled(lang, pattern, &self.args.fluent(lang))
     }
 
-    /// Returns the text for the selected case, or else the text itself: the case may be meant for a text inside this
-    /// one.
+    /// Returns the attribute for the selected case, or else the text itself, because the case may concern the text of
+    /// an inner message.
     fn pattern(&self, lang: Lang) -> Option<&'static Pattern> {
         let case = catalogue::pattern(lang, &self.id(), self.args.get(CASE));
         case.or_else(|| catalogue::pattern(lang, &self.id(), None))

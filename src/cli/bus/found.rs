@@ -77,7 +77,7 @@ fn latency(module: &Found, share: f64) -> String {
     )
 }
 
-/// Returns remarks on a module: each setting with which it answered although it stores another one, and risky settings.
+/// Returns remarks on a module: each setting in effect that differs from the stored one, and risky settings.
 fn remarks(module: &Found) -> Vec<String> {
     let mut remarks = Vec::new();
     if module.stored != module.asked {

@@ -1,4 +1,4 @@
-//! `relayrig bus monitor`: shows the traffic of a line, from a port on which it only listens, from a running
+//! `relayrig bus monitor`: shows the traffic of a line, from a serial port without sending anything, from a running
 //! controller, or from the trace of an alarm.
 
 use super::PortArgs;
@@ -111,7 +111,7 @@ fn row(news: &Update, level: Level) -> String {
     format!("{seconds:>14.6} {line} {} {shown}", message.way)
 }
 
-/// Returns a message in the detail of `level`; `text` is the message with escapes.
+/// Returns a message in the detail that `level` asks for; `text` is the message with escapes.
 fn detail(level: Level, text: &str, meaning: &str) -> String {
     let bytes = || unescaped(text).unwrap_or_default().into_iter();
     let shown = match level {
@@ -157,7 +157,7 @@ fn direction(frame: &[u8]) -> Direction {
     }
 }
 
-/// Turns entries into rows.
+/// Turns entries of a trace into rows.
 struct RowWriter {
     level: Level,
     meaning: Meaning,

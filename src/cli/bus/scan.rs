@@ -25,7 +25,7 @@ Ctrl-C.")]
 pub struct ScanArgs {
     #[command(flatten)]
     port: PortArgs,
-    /// Bits per second; may be given several times; without it, all rates of the protocol
+    /// Bits per second; may be given several times; when absent, all rates of the protocol
     #[arg(long, value_parser = baud)]
     baud: Vec<u32>,
     /// Addresses, hexadecimal, FIRST-LAST
@@ -91,7 +91,7 @@ fn addresses(text: &str) -> Result<(u8, u8), ScanArgError> {
 /// Rates of the protocol, bits per second, the most likely first.
 const RATES: [u32; 8] = [115_200, 9_600, 19_200, 38_400, 57_600, 4_800, 2_400, 1_200];
 
-/// Number of further transactions with each module found; they show the spread of its latency.
+/// Number of further transactions with each module found, which measure the spread of its latency.
 const REPETITIONS: usize = 16;
 
 pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<Exit> {
@@ -131,7 +131,7 @@ async fn scan_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()>
         let mut line = OpenLine::open(args, rate, checksum)?;
         for address in (first..=last).map(Address) {
             bar.inc(1);
-            // A module listens at one rate only; a pseudo-terminal has no rate and would show the module at every rate.
+            // A module listens at one rate only, but on a pseudo-terminal, which has no rate, it answers at every rate.
             if found.iter().all(|module| module.asked != address)
                 && let Some(module) = line.identify(address, rate, checksum).await?
             {
@@ -209,7 +209,7 @@ impl OpenLine {
         };
         let name = self.text(Common::ReadName.to(asked), stored).await?;
         let firmware = self.text(Common::ReadFirmware.to(asked), stored).await?;
-        // A reply in INIT* mode names the stored address, which `bus` refuses as the reply of another module.
+        // In INIT* mode a reply names the stored address, so `bus` refuses it as the reply of another module.
         let again = if stored == asked { REPETITIONS } else { 0 };
         for _ in 0..again {
             self.ask(Common::ReadConfig.to(asked), 1).await?;
@@ -227,8 +227,8 @@ impl OpenLine {
         }))
     }
 
-    /// Returns the text in the reply to `command`, which names the stored address; a module in INIT* mode sends no
-    /// checksum.
+    /// Returns the text in the reply to `command`; the reply names the address `stored`. A module in INIT* mode sends
+    /// no checksum.
     async fn text(&mut self, command: Command, stored: Address) -> anyhow::Result<String> {
         let is_init = command.address() != Some(stored);
         let answer = self.ask(command, if is_init { 1 } else { 3 }).await?;

@@ -10,7 +10,7 @@ use serde_json::json;
 use texts::Lang;
 use tokio_serial::SerialStream;
 
-/// One command.
+/// A command to send, and how to send it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig bus send --port /dev/ttyUSB0 --baud 9600 '$01M'
@@ -24,7 +24,7 @@ pub struct SendArgs {
     /// Bits per second
     #[arg(long, default_value_t = 115_200, value_parser = super::scan::baud)]
     baud: u32,
-    /// Add a checksum, and check that of the reply
+    /// Add a checksum, and check the checksum of the reply
     #[arg(long)]
     checksum: bool,
     /// Milliseconds that the module may take to reply, besides the time on the wire
@@ -77,7 +77,7 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
     })
 }
 
-/// Returns request, reply and its meanings, a line each.
+/// Returns the request, the reply and the meanings of the reply, a line each.
 fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: bool) -> String {
     let taken_ms = reply.taken.as_seconds() * 1e3;
     let mut rows = vec![format!("> {}", escaped(request))];
@@ -113,7 +113,8 @@ fn unambiguous(text: &[u8], model: Option<Model>) -> Option<Command> {
     }
 }
 
-/// Reads back the setting that `command` writes; returns the reply and its meaning if the setting is already in effect.
+/// Reads back the setting that `command` writes; returns the reply and its meaning when the setting already has this
+/// value, so that the module's EEPROM need not be written.
 async fn in_effect(
     port: &mut SerialStream,
     settings: &LineSettings,

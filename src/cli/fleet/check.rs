@@ -14,7 +14,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {
-    /// Also ask history and database N random questions, which must have the same answers to the last digit
+    /// Also ask history and database N random questions, whose answers must agree to the last digit
     #[arg(long, value_name = "N", default_value_t = 0)]
     questions: u32,
     /// Seed of the questions

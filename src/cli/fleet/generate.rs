@@ -9,11 +9,11 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct GenerateArgs {
-    /// Parts of all rigs
+    /// Number of parts of all rigs together
     #[arg(long, value_name = "N", default_value_t = 400_000,
         value_parser = clap::value_parser!(i64).range(1..=1_000_000_000))]
     parts: i64,
-    /// Rigs
+    /// Number of rigs
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(i64).range(1..=10_000))]
     rigs: i64,
     /// Time over which the parts of each rig are spread, up to now

@@ -7,7 +7,7 @@ use config::FleetTarget;
 
 #[derive(Debug, Args)]
 pub(super) struct InitArgs {
-    /// User who owns the schema, instead of the one in the url
+    /// User who owns the schema, instead of the user in the URL
     #[arg(long, value_name = "NAME")]
     user: Option<String>,
 }

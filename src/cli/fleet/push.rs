@@ -10,10 +10,10 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct PushArgs {
-    /// Continue as a new epoch of the rig: this file replaces the one that sent before
+    /// Continue as a new epoch of the rig: this history file replaces the file that sent before
     #[arg(long)]
     take_over: bool,
-    /// Queue everything again and send it, after a database lost rows; it keeps what it has
+    /// Queue and send everything again, after a database lost rows; the database keeps the rows that it has
     #[arg(long, conflicts_with = "take_over")]
     again: bool,
     /// Remove databases that fleet.toml no longer names, so that retention does not wait for them

@@ -1,4 +1,4 @@
-//! `fleet serve`: the page of all rigs of a database; it only reads.
+//! `fleet serve`: the page of all rigs of a database, which only reads.
 
 use crate::cli::serve::PageArgs;
 use app::exit::Exit;

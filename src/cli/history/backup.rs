@@ -20,7 +20,7 @@ pub struct BackupArgs {
     keep: NonZeroUsize,
 }
 
-/// Runs the command.
+/// Runs `relayrig history backup`; an error is bad input (exit status 2).
 pub fn run(files: &Files, args: &BackupArgs) -> anyhow::Result<()> {
     if let Some(file) = &args.file {
         let bytes = copies::backup(&files.db, file)?;

@@ -48,7 +48,7 @@ pub(super) struct PartArgs {
     /// Production parts, reference parts (golden), or both
     #[arg(long, value_parser = checks::KINDS, default_value = "lot")]
     pub kind: String,
-    /// Only suspect parts: judged before a failed reference check and after the check before it
+    /// Only suspect parts: judged between a failed reference check and the reference check before it
     #[arg(long)]
     pub suspect: bool,
     /// At most N parts, the first in order of judgement
@@ -62,7 +62,7 @@ pub(super) struct PartArgs {
 /// A range of values of one parameter.
 #[derive(Debug, Args)]
 pub(super) struct RangeArgs {
-    /// Only parts with a number for this parameter, from its last attempt, that is not void
+    /// Only parts whose last attempt at this parameter gave a number and is not void
     #[arg(long, value_name = "KEY")]
     pub param: Option<String>,
     /// Least value of the parameter

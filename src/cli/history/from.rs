@@ -18,10 +18,10 @@ pub(super) struct FromArgs {
     /// Only rigs of this plant
     #[arg(long, global = true, value_name = "NAME")]
     site: Option<String>,
-    /// Certificate of the authority of the database, PEM; without it that of fleet.toml
+    /// PEM certificate of the authority that issued the database's certificate; when absent, that of fleet.toml
     #[arg(long, global = true, value_name = "FILE")]
     ca: Option<PathBuf>,
-    /// Do not encrypt, in a network of your own
+    /// Do not encrypt; only for a network of your own
     #[arg(long, global = true, conflicts_with = "ca")]
     no_tls: bool,
 }
@@ -30,7 +30,7 @@ impl FromArgs {
     /// Opens the history file, or the database.
     ///
     /// # Errors
-    /// Fails when it cannot be read, and when an option needs --from.
+    /// Fails when the history cannot be read, and for an option that is valid only with --from.
     pub fn open(&self, files: &Files) -> anyhow::Result<Archive> {
         match &self.from {
             Some(url) => self.database(files, url),
@@ -41,7 +41,7 @@ impl FromArgs {
         }
     }
 
-    /// Returns the history file, if the answers come from it.
+    /// Returns the history file `db` if the answers come from it; `None` with --from.
     pub fn file<'a>(&self, db: &'a Path) -> Option<&'a Path> {
         self.from.is_none().then_some(db)
     }
@@ -49,7 +49,7 @@ impl FromArgs {
     /// Refuses --from for a command that works on the file of a rig.
     ///
     /// # Errors
-    /// Fails with --from, or with an option that needs it.
+    /// Fails with --from, and with an option that is valid only with --from.
     pub fn refuse(&self, command: &str) -> anyhow::Result<()> {
         anyhow::ensure!(
             self.from.is_none(),
@@ -90,7 +90,8 @@ impl FromArgs {
         Ok(Archive::of_server(Box::new(reader)))
     }
 
-    /// Returns the database with the encryption that `fleet.toml` has for it, whatever the user.
+    /// Returns the database with the encryption of --ca or --no-tls, else with that of `fleet.toml` for the same server
+    /// and database, whatever the user.
     #[cfg(feature = "fleet")]
     fn target(&self, files: &Files, url: &str) -> anyhow::Result<config::FleetTarget> {
         let place = |url: &str| {

@@ -18,7 +18,7 @@ pub(super) struct GenerateArgs {
     /// Seed of all values
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Recipe that the parts are judged by
+    /// Recipe that judges the parts
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     recipe: String,
     /// Instant of the last part (2026-11-22, -8h, RFC 3339); now when absent

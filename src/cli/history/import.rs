@@ -16,7 +16,7 @@ pub(super) struct ImportArgs {
     /// Lot to put the parts into
     #[arg(long)]
     lot: String,
-    /// Parameter key of a column of the file; may be given several times
+    /// Parameter key for a column of the file; may be given several times
     #[arg(long = "map", value_name = "COLUMN=KEY", value_parser = pair)]
     maps: Vec<(String, String)>,
     /// Sheet of the spreadsheet; the first when absent
@@ -24,7 +24,7 @@ pub(super) struct ImportArgs {
     sheet: Option<String>,
 }
 
-/// The text is not `COLUMN=KEY`.
+/// Error: the text is not `COLUMN=KEY`.
 #[derive(Debug, thiserror::Error)]
 #[error("expected COLUMN=KEY")]
 struct PairError;

@@ -34,7 +34,7 @@ pub(super) const COLUMNS: [Column<LotSummary>; 16] = [
     ("cause", |it| text(it.cause.as_ref())),
 ];
 
-/// Column of an answer of many rigs.
+/// Column that only an answer about many rigs has.
 const RIG: Column<LotSummary> = ("rig", |it| text(it.rig.as_ref()));
 
 pub(super) fn run(archive: &Archive, args: &ListArgs) -> anyhow::Result<()> {

@@ -20,7 +20,7 @@ pub(in crate::cli) enum LangArg {
 /// File and language of a page.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PaperArgs {
-    /// Language of the page; that of the locale (LC_ALL, LC_MESSAGES, LANG) when absent, and en when it names neither
+    /// Language of the page; when absent, that of the locale (LC_ALL, LC_MESSAGES, LANG), else en
     #[arg(long, value_enum)]
     lang: Option<LangArg>,
     /// HTML file to write, for A4 (print it from a browser); - is stdout
@@ -29,7 +29,7 @@ pub(in crate::cli) struct PaperArgs {
 }
 
 impl LangArg {
-    /// Returns the language of the option; without the option, that of the locale.
+    /// Returns the language of `option`; for `None`, the language of the locale.
     pub fn or_locale(option: Option<Self>) -> Lang {
         match option {
             Some(Self::En) => Lang::En,
@@ -42,7 +42,7 @@ impl LangArg {
 /// Variables of the locale; the first that is not empty decides (POSIX.1-2017, 8.2).
 const LOCALE: [&str; 3] = ["LC_ALL", "LC_MESSAGES", "LANG"];
 
-/// Returns the language that the values of [`LOCALE`] name; English when they name neither.
+/// Returns the language that the values of [`LOCALE`] name; English when they name neither English nor Chinese.
 fn of_locale(values: [String; 3]) -> Lang {
     let decides = values.into_iter().find(|it| !it.is_empty());
     match decides.is_some_and(|it| it.starts_with("zh")) {

@@ -14,7 +14,7 @@ const LISTED: u32 = 10_000;
 
 #[derive(Debug, Args)]
 pub(super) struct PlansArgs {
-    /// Number of a plan: its steps instead of the list
+    /// Number of a plan; shows the steps of this plan instead of the list
     #[arg(value_name = "PLAN")]
     plan: Option<i64>,
     /// The plan on paper, HTML for A4

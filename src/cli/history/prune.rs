@@ -13,7 +13,7 @@ pub(super) struct PruneArgs {
     /// Runs that ended at least N days ago
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=36_500))]
     older_than_days: u32,
-    /// Delete them; without it they are only listed
+    /// Delete the runs; without this option the command only lists them
     #[arg(long)]
     yes: bool,
 }

@@ -30,7 +30,7 @@ enum Command {
     },
 }
 
-/// Runs the command. An error is bad input: exit status 2.
+/// Runs `relayrig quality`; an error is bad input (exit status 2).
 pub fn run_quality(args: QualityArgs) -> anyhow::Result<Exit> {
     super::super::unless_pipe_closed(dispatch(&args.command), Exit::Done)
 }

@@ -16,7 +16,7 @@ pub(super) struct ReportArgs {
     /// Only the list of alarms; without --lot, of all lots
     #[arg(long)]
     alarms: bool,
-    /// Shortest cycle of the line for the OEE; the quickest 5 % of the lot when absent
+    /// Shortest cycle that the line can keep, s, for the OEE; when absent, the 5 % quantile of the lot
     #[arg(long, value_name = "S")]
     ideal_cycle_s: Option<f64>,
     #[command(flatten)]

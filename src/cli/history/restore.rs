@@ -9,17 +9,17 @@ use std::path::PathBuf;
 /// Arguments of `history restore`.
 #[derive(Debug, clap::Args)]
 pub struct RestoreArgs {
-    /// Dated folder of `backup --into`, the folder that holds them (the newest counts), or a copied history
+    /// Dated folder of `backup --into`, the folder of dated folders (restores the newest), or a copied history
     backup: PathBuf,
     /// Only check the backup; writes nothing
     #[arg(long, conflicts_with = "replace")]
     check: bool,
-    /// Replace what is there; it stays beside the restored files as NAME.before-TIME
+    /// Replace existing files, which stay beside the restored ones as NAME.before-TIME
     #[arg(long)]
     replace: bool,
 }
 
-/// Runs the command; a fault that the check of the backup finds gives exit status 1, not an error.
+/// Runs `relayrig history restore`; a fault that the check of the backup finds gives exit status 1, not an error.
 pub fn run(files: &Files, args: &RestoreArgs) -> anyhow::Result<Exit> {
     let backup = Contents::find(&args.backup)?;
     let mut out = Output::stdout();

@@ -19,19 +19,19 @@ enum RuleSet {
 
 #[derive(Debug, Args)]
 pub(super) struct SpcArgs {
-    /// Parameter key; without it the share of every bin is charted, run by run
+    /// Parameter key; when absent, charts the share of every bin, run by run
     #[arg(long, value_name = "KEY")]
     param: Option<String>,
     #[command(flatten)]
     parts: PartArgs,
-    /// Parts of a subgroup: 1 is individuals and moving range, 2 to 10 means and ranges
+    /// Parts of a subgroup: 1 charts individuals and moving ranges, 2 to 10 means and ranges
     #[arg(long, value_name = "N", default_value_t = 1, requires = "param",
         value_parser = clap::value_parser!(u8).range(i64::from(*SUBGROUPS.start())..=i64::from(*SUBGROUPS.end())))]
     subgroup: u8,
     /// Run rules
     #[arg(long, value_enum, default_value = "nelson")]
     rules: RuleSet,
-    /// Draw the last N points; limits come from all
+    /// Draw the last N points; the control limits come from all points
     #[arg(long, value_name = "N", default_value_t = 200)]
     last: usize,
     /// One JSON object per chart

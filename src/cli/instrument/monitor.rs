@@ -25,7 +25,7 @@ listens to a serial port and sends nothing; a network connection cannot be liste
 pub struct MonitorArgs {
     #[command(flatten)]
     link: LinkArgs,
-    /// Profile whose set-up is sent before the first query
+    /// Profile; its set-up goes to the instrument before the first query
     #[arg(long, value_name = "NAME", requires = "query")]
     profile: Option<String>,
     /// Query to repeat
@@ -89,7 +89,7 @@ async fn repeat(link: &mut Link, args: &MonitorArgs, query: &str) -> anyhow::Res
     }
 }
 
-/// Prints the messages of the queries since the last call; `shown` is the number of the last query printed.
+/// Prints the messages of the queries since the last call; `shown` is the number of the last printed query.
 fn print_traffic(link: &Link, shown: &mut Option<u64>) -> anyhow::Result<()> {
     let traffic = link.log().traffic();
     let new = traffic
@@ -100,7 +100,7 @@ fn print_traffic(link: &Link, shown: &mut Option<u64>) -> anyhow::Result<()> {
     print(&text)
 }
 
-/// Shows the lines on a serial port until it goes away.
+/// Shows the lines of text that arrive at a serial port until the port goes away.
 async fn listen(path: &str, baud: u32) -> anyhow::Result<()> {
     let mut port =
         open_serial(path, baud).with_context(|| format!("--link serial:{path}:{baud}"))?;

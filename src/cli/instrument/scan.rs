@@ -1,4 +1,4 @@
-//! `relayrig instrument scan`: asks links for the identity of their instrument.
+//! `relayrig instrument scan`: asks the instrument at each link for its identity.
 
 use super::{Place, sentence};
 use crate::cli::output::{Fixed, latency_ms, listing, print};
@@ -40,7 +40,7 @@ const RAW_PORTS: [u16; 2] = [5025, 5555];
 const ADAPTER_PORT: u16 = 1234;
 /// Greatest GPIB address.
 const LAST_ADDRESS: u8 = 30;
-/// Number of further queries to each instrument, which show its latency.
+/// Number of further queries to each instrument, which measure its latency.
 const REPETITIONS: usize = 8;
 
 /// An instrument that answered.
@@ -83,7 +83,7 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
     for link in links {
         bar.set_message(link.to_string());
         bar.inc(1);
-        // An adapter that refuses a connection for one address refuses it for all.
+        // A GPIB adapter that refuses the connection for one address refuses it for every address.
         if unreachable.as_ref() == Some(&link.transport) {
             continue;
         }
@@ -99,7 +99,7 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
                 });
             }
             Err(failure) => {
-                // The user named a link, but a port of a host is only a guess.
+                // Warns only of links that the user named: the ports of a host are guesses.
                 match args.link.contains(&link) {
                     true => tracing::warn!("{link}: {}", sentence(&failure)),
                     false => tracing::debug!("{link}: {}", sentence(&failure)),

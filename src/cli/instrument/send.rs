@@ -11,7 +11,7 @@ use config::Folder;
 use scpi::{ErrorEntry, Failure, Form, Raw, ReplyError, number, string};
 use serde_json::json;
 
-/// One command.
+/// A command to send, and how to send it.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig instrument send --link tcp:192.168.1.20:5025 '*IDN?'
@@ -32,11 +32,11 @@ pub struct SendArgs {
     /// One JSON object
     #[arg(long)]
     json: bool,
-    /// The command; one with ? has a reply
+    /// The command; a command with ? has a reply
     command: String,
 }
 
-/// Largest number of entries of the error queue that are read.
+/// Greatest number of entries that the command reads from the error queue.
 const ENTRIES: usize = 32;
 
 pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit> {
@@ -50,7 +50,7 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
     let mut link = place.link(profile.as_ref());
     let pace = Pace::real();
     if let Some(remote) = profile.and_then(|it| it.remote) {
-        // If this fails, the command itself fails too and reports it.
+        // After a failure here the command itself fails too, and reports the failure.
         let _ = link.exchange(&remote, None).await;
     }
     let began = pace.now();
@@ -89,7 +89,7 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
     })
 }
 
-/// Reads the error queue; returns its entries, and why it could not be read to its end.
+/// Reads at most [`ENTRIES`] entries of the error queue; returns them, and the failure that stopped the reading.
 async fn errors(link: &mut Link) -> (Vec<ErrorEntry>, Option<Failure>) {
     let mut found = Vec::new();
     while found.len() < ENTRIES {
@@ -126,7 +126,7 @@ fn transcript(command: &str, outcome: &Result<Option<Raw>, Failure>, taken_ms: f
     rows
 }
 
-/// Number of bytes of a block that are shown.
+/// Number of bytes of a block that the answer shows.
 const SHOWN: usize = 32;
 
 fn shown(raw: &Raw) -> String {

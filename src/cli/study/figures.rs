@@ -25,7 +25,7 @@ pub struct FiguresArgs {
     docs: PathBuf,
 }
 
-/// Runs the command.
+/// Runs `relayrig study figures`.
 ///
 /// # Errors
 /// Fails when plan or results cannot be read, when a run failed, or when a file cannot be written.

@@ -8,9 +8,9 @@ use units::Unit;
 /// Coverage factor of printed uncertainties: about 95 %.
 pub const K: f64 = 2.0;
 
-/// Coverage factor of a comparison. All fifteen factors must agree: with k = 2, about every second unchanged rig would
-/// fail (1 - 0.95^15); with k = 3, at most one in 25 (1 - 0.9973^15), and fewer because both measurements share error
-/// terms.
+/// Coverage factor of a comparison. All fifteen factors must agree: with k = 2, an unchanged rig would fail about every
+/// second verification (1 - 0.95^15); with k = 3, at most one in 25 (1 - 0.9973^15), and fewer because both
+/// measurements share error terms.
 pub const K_JOINT: f64 = 3.0;
 
 /// A factor measured again, beside the stored one.
@@ -29,7 +29,7 @@ pub struct FactorComparison {
 }
 
 impl FactorComparison {
-    /// Returns true when both values agree within the uncertainty; NaN never agrees.
+    /// Returns true when `found` and `expected` differ by at most `expanded_u`; NaN never agrees.
     pub fn agrees(&self) -> bool {
         (self.found - self.expected).abs() <= self.expanded_u
     }

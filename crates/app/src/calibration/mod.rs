@@ -4,7 +4,8 @@
 //! afterwards. A calibration stores the factors found. A verification stores no factors: each factor found must agree
 //! with the stored one within the combined expanded uncertainty (k = 3, because all fifteen must agree), and the
 //! history marks the stored calibration with the outcome. A rig whose calibration is overdue or failed its verification
-//! runs no lot until it is calibrated again.
+//! runs no lot until it is calibrated again. A kind that is calibrated by certificate takes its factors from the file
+//! of the certificate, without a run.
 
 mod compare;
 
@@ -33,7 +34,7 @@ const LOT: &str = "calibration";
 pub enum Calibrated {
     /// A calibration: the history holds the new factors.
     Stored(Box<Calibration>),
-    /// A verification: the stored factors beside those found now.
+    /// A verification: the stored factors beside the factors found now.
     Verified {
         /// One entry per factor.
         compared: Vec<FactorComparison>,
@@ -44,11 +45,12 @@ pub enum Calibrated {
     Ended(Exit),
 }
 
-/// Calibrates the rig, or verifies its calibration. The coil voltage of `recipe` selects the reference parts.
+/// Calibrates the rig, or with `verify` verifies its calibration. The coil voltage of the recipe selects the reference
+/// parts; a kind that is calibrated by certificate needs no run.
 ///
 /// # Errors
-/// Fails when the recipe has no coil, when no reference part has its coil voltage, when there is no valid calibration
-/// to verify, or as [`super::run_lot`] does.
+/// Fails when the kind needs no calibration, when the plant has no reference part of the recipe's coil voltage or no
+/// valid certificate, when there is no valid calibration to verify, or as [`super::run_lot`] does.
 pub fn calibrate(
     files: &Files,
     source: &RigSource,
@@ -99,8 +101,8 @@ pub fn calibrate(
     }
 }
 
-/// Returns the calibration that the certificates of the plant give for the recipe, with the name of their file; `None` for
-/// a kind that is calibrated on parts.
+/// Returns the calibration that the certificates of the plant give for the recipe, with the name of their file; `None`
+/// for a kind that is calibrated on parts.
 fn certified(
     config: &Folder,
     recipe: &str,
@@ -121,7 +123,7 @@ fn certified(
 }
 
 /// Returns the calibration that the certificates of the plant give for parts of a recipe; `None` for a kind that is
-/// calibrated on parts, or without a certificate.
+/// calibrated on parts, and for a plant without a certificate.
 pub(super) fn of_plant(
     plant: &Plant,
     device: &DeviceRecipe,
@@ -135,8 +137,8 @@ pub(super) fn of_plant(
     device.certified(&plant.rig(), made)
 }
 
-/// Stores a certified calibration, or compares the stored one with it. A certificate that has run out must be replaced
-/// first.
+/// Stores the certified calibration `found`, or with `verify` compares the stored one with it. Refuses to store a
+/// certificate that has expired or is dated in the future.
 fn keep_certified(
     files: &Files,
     found: Calibration,
@@ -169,7 +171,8 @@ fn keep_certified(
     keep(&files.db, found)
 }
 
-/// Returns the nominal coil voltage of the recipe, V; fails when no reference part has this voltage.
+/// Returns the nominal coil voltage of the recipe, V; fails for a recipe without a coil, and when no reference part has
+/// this voltage.
 fn reference_voltage(config: &Folder, recipe: &str) -> anyhow::Result<f64> {
     let plant = Plant::load(config)?;
     let Some(nominal_v) = load_recipe(config, recipe)?.device.part().nominal_v else {

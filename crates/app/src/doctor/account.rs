@@ -51,7 +51,7 @@ impl Account {
         }
     }
 
-    /// Returns true when mode and owner let the account write the file; access control lists are not read.
+    /// Returns true when mode and owner let the account write the file; ignores access control lists.
     pub fn may_write(&self, file: &Metadata) -> bool {
         self.uid == 0 || self.has_write_bit(file)
     }

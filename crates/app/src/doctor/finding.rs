@@ -1,4 +1,4 @@
-//! A finding of `doctor` or `host check`: what was checked, what was found and expected, and what to do.
+//! A finding of `doctor` or `host check`: subject, found and expected state, and what to do.
 
 use serde::Serialize;
 use std::fmt;
@@ -25,7 +25,7 @@ pub enum Check {
     Latency,
     /// Wall clock, which dates every row.
     Clock,
-    /// Calibration for one coil voltage.
+    /// Calibration for one coil voltage, or of a rack.
     Calibration,
     /// Right of the cycle's thread to a real-time priority.
     RealTime,
@@ -62,7 +62,7 @@ impl Check {
 pub enum Health {
     /// As expected.
     Ok,
-    /// Could not be checked.
+    /// The check was not possible.
     Unknown,
     /// The rig works, but less safely or less precisely than it could.
     Warning,

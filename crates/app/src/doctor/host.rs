@@ -36,12 +36,12 @@ struct Privileges {
     of: &'static str,
     /// Highest real-time priority, 0 for none.
     priority: u64,
-    /// Most memory that the program may lock, bytes; the program locks no memory unless this is `u64::MAX`, no limit.
+    /// Most memory that the program may lock, bytes, `u64::MAX` for no limit; with a limit the program locks no memory.
     locked: u64,
 }
 
 /// Checks the rights of the running service, or of the installed service while it is stopped, or of this process when
-/// none is installed.
+/// no service is installed.
 pub(super) fn check_privileges() -> Vec<Finding> {
     match of_service().or_else(|| of_process("this process", "self")) {
         Some(privileges) => privileges.findings().into(),
@@ -68,8 +68,8 @@ impl Privileges {
         ]
     }
 
-    /// Makes the rights from the limits of priority and locked memory; `lifted` is true where a capability, or being
-    /// root, lifts that limit.
+    /// Returns the rights under `limits`, first of priority, then of locked memory; `lifted` is true for a limit that a
+    /// capability or the user root lifts.
     fn new(of: &'static str, limits: [Option<u64>; 2], lifted: [bool; 2]) -> Self {
         let [priority, locked] = limits.map(Option::unwrap_or_default);
         Self {

@@ -32,7 +32,7 @@ pub struct Installation<'a> {
     pub backups: Option<&'a Path>,
 }
 
-/// Returns the findings in the order of [`Check`].
+/// Returns the findings in the order of [`Check`]; the latency of a port follows that port.
 pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
     let files = installation.files;
     let folder = files.data_folder();

@@ -1,4 +1,4 @@
-//! Checks serial ports. Opens none of them, because that would change control lines of a running rig.
+//! Checks serial ports. Opens none of them, because opening would change control lines of a running rig.
 
 use super::account::{Account, group, rights};
 use super::finding::{Check, Finding, Subject};
@@ -29,8 +29,8 @@ struct Wired {
     device: Option<PathBuf>,
 }
 
-/// Checks the serial port of every line and instrument, and the latency timer of a USB converter; `given` replaces ports
-/// of the wiring.
+/// Checks the serial port of every line and instrument, and the latency timer of a USB converter; `given` replaces
+/// ports of the wiring.
 pub(crate) fn check(wiring: &Wiring, given: &[LinePort], account: &Account) -> Vec<Finding> {
     let wired = wiring.lines.iter().map(|line| {
         let other = given.iter().find(|it| it.line == line.name);
@@ -119,7 +119,7 @@ fn open_up(device: &Metadata, account: &Account) -> String {
     }
 }
 
-/// Checks the latency timer of a USB converter; no finding for a port without one. `sys` is the mount point of sysfs.
+/// Checks the latency timer of a USB converter; `None` for a port without one. `sys` is the mount point of sysfs.
 fn check_latency(sys: &Path, device: &Path) -> Option<Finding> {
     let name = device.file_name()?;
     let file = sys

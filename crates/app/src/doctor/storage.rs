@@ -109,7 +109,7 @@ fn remedy_of(error: &HistoryError) -> &'static str {
     }
 }
 
-/// Checks the rights of the file of people and sessions; no finding before the first start.
+/// Checks the rights of the file of people and sessions; `None` before the first start, which creates the file.
 pub(super) fn check_people(db: &Path, account: &Account) -> Option<Finding> {
     let file = access_path(db);
     let meta = fs::metadata(&file).ok()?;

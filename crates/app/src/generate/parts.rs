@@ -12,7 +12,7 @@ const DEFECTS: f64 = 0.04;
 /// Share of values with a second attempt, 0 to 1.
 const REPEATED: f64 = 0.05;
 
-/// A characteristic whose values are generated, and the distribution to draw them from.
+/// A characteristic with the distribution from which the generator draws its values.
 struct Generated {
     of: Characteristic,
     limit: Limit,

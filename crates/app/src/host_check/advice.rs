@@ -128,8 +128,8 @@ fn unexplained(facts: &Facts, verdict: &Verdict) -> Option<Finding> {
     (!verdict.is_kept).then(|| late("kernel and firmware", found, "no late wait", remedy))
 }
 
-/// Advises to accept a slower emergency stop when late waits exceed its margin although the thread has real-time
-/// priority.
+/// Advises to accept a slower emergency stop when late waits exceed the margin of this stop although the thread has
+/// real-time priority.
 fn demand(facts: &Facts, verdict: &Verdict) -> Option<Finding> {
     let need = verdict.needs.iter().find(|it| it.key == EMERGENCY_STOP)?;
     if need.is_kept || !facts.is_fifo {

@@ -31,7 +31,7 @@ impl CpuTime {
         })
     }
 
-    /// Returns the time between two readings; zero when one of them is missing.
+    /// Returns the time between two readings; zero when a reading is missing.
     pub fn between(before: Option<Self>, after: Option<Self>) -> Self {
         let both = before.zip(after);
         both.map_or_else(Self::default, |(before, after)| Self {

@@ -26,7 +26,7 @@ pub struct Facts {
     pub cpu_time: CpuTime,
 }
 
-/// Places where a thread may interrupt the kernel.
+/// Places in the kernel where a thread of higher priority may interrupt the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Preemption {
     /// Nearly everywhere (PREEMPT_RT).
@@ -60,7 +60,7 @@ pub struct RealTimeShare {
 }
 
 impl RealTimeShare {
-    /// Returns true when it is at least the 95 % of a usual kernel.
+    /// Returns true when the share is unlimited or at least 95 %, as in a usual kernel.
     pub fn is_enough(self) -> bool {
         self.runtime_us < 0 || 100 * self.runtime_us >= 95 * self.period_us
     }

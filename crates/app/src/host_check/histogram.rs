@@ -5,8 +5,8 @@ use machine::view::LatenessView;
 /// Length of the longest bar, characters.
 const WIDTH: f64 = 40.0;
 
-/// Returns a line for each class from the first to the last that holds a wait: upper edge, bar, count. One wait is one
-/// character long.
+/// Returns a line for each class from the first to the last that holds a wait: upper edge, bar, count. The bar of one
+/// wait is one character long. A last line counts the waits beyond the greatest class.
 pub fn bars(lateness: &LatenessView) -> Vec<String> {
     let counts: Vec<u64> = lateness.buckets.iter().map(|it| it.count).collect();
     let most = counts.iter().copied().max().unwrap_or(0);

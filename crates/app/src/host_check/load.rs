@@ -17,7 +17,7 @@ const BLOCK: usize = 64 * 1024;
 /// Steps that a busy thread takes between two checks of the stop flag.
 const STEPS: u32 = 10_000;
 
-/// Creates a file without a name in `folder`: the system removes it however the program ends.
+/// Creates a file without a name in `folder`; the system removes the file however the program ends.
 ///
 /// # Errors
 /// Fails when the folder does not exist or refuses a new file; the error names the folder.
@@ -31,7 +31,7 @@ pub(super) fn scratch_file(folder: &Path) -> anyhow::Result<File> {
     tempfile::tempfile_in(folder).with_context(place)
 }
 
-/// A load under way. Dropping it ends its threads.
+/// A running load. Dropping the value ends the threads.
 pub(super) struct Load {
     stop: Arc<AtomicBool>,
     busy: Vec<JoinHandle<()>>,

@@ -44,7 +44,7 @@ use verdict::Verdict;
 pub struct Report {
     /// Results in the order of [`Phase::ALL`].
     pub phases: Vec<PhaseResult>,
-    /// Whether the worst lateness is tolerated.
+    /// Comparison of the worst lateness with what `rig.toml` tolerates.
     pub verdict: Verdict,
     /// Causes of late waits and faults of ports, with what to change; empty when there are none.
     pub advice: Vec<Finding>,
@@ -54,7 +54,7 @@ pub struct Report {
 /// in `folder`. Calls `ended` after each phase. Opens no port. Returns `None` after Ctrl-C.
 ///
 /// # Errors
-/// Fails when `folder` takes no file, when the system refuses a thread, or as `ended` does.
+/// Fails when `folder` refuses a file, when the system refuses a thread, or as `ended` does.
 pub fn run(
     wiring: &Wiring,
     folder: &Path,

@@ -36,7 +36,7 @@ impl Phase {
 pub struct PhaseResult {
     /// Phase that was measured.
     pub phase: Phase,
-    /// Lateness of its waits.
+    /// How late the waits of the phase ended.
     pub lateness: LatenessView,
     /// Time of all CPUs during the phase.
     #[serde(flatten)]

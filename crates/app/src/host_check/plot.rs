@@ -10,7 +10,7 @@ const RIGHT: f64 = 30.0;
 const TOP: f64 = 92.0;
 const HEIGHT: f64 = 260.0;
 const BELOW: f64 = 46.0;
-/// Height of a bar that stands for a single wait, decades: on the logarithmic scale it would have none.
+/// Height of the bar of a single wait, decades; the logarithm alone would give this bar no height.
 const ONE: f64 = 0.25;
 const LIMIT: &str = "#a11212";
 
@@ -53,8 +53,8 @@ impl Axes {
     }
 }
 
-/// Returns the position of a lateness on the x axis, in classes from the left; `edges` are classes whose upper edges
-/// double.
+/// Returns the position of a lateness on the x axis, in classes from the left; each class of `edges` has twice the
+/// upper edge of the class before.
 fn place(edges: &[Bucket], ms: f64) -> f64 {
     let first = edges.first().map_or(1.0, |it| it.up_to_ms);
     match ms < first {

@@ -13,7 +13,7 @@ pub(super) fn cpu_time() -> Option<CpuTime> {
     CpuTime::parse(&stat, clock_ticks_per_second())
 }
 
-/// Reads the state of the computer; `cpu_time` is that of the test.
+/// Reads the state of the computer; `cpu_time` is the CPU time during the test.
 pub(super) fn facts(rights: &HostView, cpu_time: CpuTime) -> Facts {
     Facts {
         program: std::env::current_exe().unwrap_or_default(),

@@ -3,7 +3,7 @@
 use machine::rig::wiring::Wiring;
 use serde::Serialize;
 
-/// Key of the need for a short enough reaction to the emergency stop.
+/// Key of the need for a reaction to the emergency stop within `safety.estop_reaction_ms`.
 pub(super) const EMERGENCY_STOP: &str = "emergency_stop";
 
 /// A requirement of `rig.toml` that a late computer may break.
@@ -19,7 +19,7 @@ pub struct Need {
     pub origin: String,
 }
 
-/// Whether a computer keeps the time of a rig.
+/// Comparison of a computer's lateness with the needs of a rig.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
     /// True when every need is met at the worst lateness.
@@ -28,9 +28,9 @@ pub struct Verdict {
     pub worst_ms: f64,
     /// Least of the tolerated latenesses, ms.
     pub tolerated_ms: f64,
-    /// Least `safety.estop_reaction_ms` with which the need of the emergency stop is met at the worst lateness, ms.
+    /// Least `safety.estop_reaction_ms` that the rig keeps at the worst lateness, ms.
     pub reaction_with_lateness_ms: f64,
-    /// Each need with the lateness that it tolerates.
+    /// Each need with its tolerated lateness.
     pub needs: [Need; 2],
 }
 

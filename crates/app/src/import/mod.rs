@@ -20,11 +20,11 @@ pub struct Source<'a> {
     pub bytes: &'a [u8],
     /// Name of the sheet to read from a spreadsheet; `None`: the first sheet.
     pub sheet: Option<&'a str>,
-    /// Pairs of a column's name in the file and the key that the column stands for.
+    /// Pairs of a column's name in the file and the key of the values in this column.
     pub maps: &'a [(String, String)],
 }
 
-/// The run that was made for the parts of a file.
+/// The run that holds the parts of an imported file.
 #[derive(Debug)]
 pub struct Imported {
     /// Number of parts.
@@ -36,7 +36,7 @@ pub struct Imported {
 /// Puts the parts of a file into a new run of `lot`.
 ///
 /// # Errors
-/// Fails when the file has no readable records, an unknown column or an invalid cell, or when it is in the lot already.
+/// Fails on a file without readable records, with an unknown column or an invalid cell, or that the lot already has.
 pub fn import(db: &Path, source: &Source, lot: &str) -> anyhow::Result<Imported> {
     let name = || source.file.display().to_string();
     let records = records(source).with_context(name)?;

@@ -1,7 +1,7 @@
 //! Reads the first sheet of a spreadsheet, or a named one, as records: xlsx, xlsm, xlsb, xls, ods.
 //!
 //! A number becomes the shortest text that reads back as the same number. A date becomes RFC 3339 in the time zone of
-//! this computer, because a spreadsheet has none. Empty rows are skipped; the others keep their row numbers.
+//! this computer, because a spreadsheet has no time zone. Empty rows are skipped; the others keep their row numbers.
 
 use anyhow::Context;
 use calamine::{Data, Reader, open_workbook_auto};

@@ -20,10 +20,10 @@ pub enum Purpose {
     /// To control the machine between lots: the machine begins in this state, and discharges parts found inside as lot
     /// [`FOUND_LOT`].
     BetweenLots(State),
-    /// To measure the references and the reference parts only, even if a calibration is valid; the run itself stores no
-    /// calibration in the history.
+    /// To measure only the references on the interface board and the reference parts, even if a calibration is valid;
+    /// the run itself stores no calibration in the history.
     Calibration,
-    /// To find figures of a rig with a rack, without parts.
+    /// To measure properties of a rig with a rack, without parts.
     Experiment(Experiment),
 }
 

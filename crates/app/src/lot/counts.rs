@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 pub struct Counts {
     /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<&'static str, u64>,
-    /// Parts of the lot that were seen by the beam of a bin, by bin.
+    /// Parts of the lot that the beam of a bin has seen, by bin.
     pub bins: BTreeMap<String, u64>,
     /// Alarms of the run.
     pub alarms: u64,
@@ -36,7 +36,7 @@ impl Counts {
         self.verdicts.values().sum()
     }
 
-    /// Returns judged parts per hour of rig time; `None` when `elapsed_s` is 0.
+    /// Returns judged parts per hour of rig time; `None` unless `elapsed_s` is above 0.
     pub fn per_hour(&self, elapsed_s: f64) -> Option<f64> {
         (elapsed_s > 0.0).then(|| self.parts() as f64 / elapsed_s * 3600.0)
     }

@@ -20,15 +20,15 @@ pub enum LotEvent {
     /// The record of a judged part is complete: the part has landed in a bin, or the run is over and the part will
     /// never land (`None`).
     PartDone(Box<PartUnderWay>, Option<Landed>),
-    /// These files hold the traffic of every line before an alarm.
+    /// These files hold the traffic of every line and instrument before an alarm.
     TracesKept(Vec<PathBuf>),
     /// The run is over.
     Ended(Box<Summary>),
 }
 
-/// Receives the events of a run; a page, a terminal or a script implements it.
+/// Receiver of the events of a run, such as the page, the terminal or the player of a script.
 pub trait Subscriber {
-    /// Receives an event; `lot` already takes it into account.
+    /// Receives an event, which `lot` already takes into account.
     fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>);
 }
 
@@ -60,7 +60,7 @@ impl Subscriber for OnceLock<Calibration> {
     }
 }
 
-/// Keeps what an experiment has found.
+/// Keeps the findings of an experiment.
 impl Subscriber for OnceLock<Found> {
     fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(Event::Found(found)) = event {
@@ -73,7 +73,7 @@ impl Subscriber for OnceLock<Found> {
 impl Subscriber for mpsc::UnboundedSender<Event> {
     fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(event) = event {
-            // A receiver that is gone needs no events.
+            // Sending fails only after the receiver is gone, which then needs no events.
             let _ = self.send(event.clone());
         }
     }

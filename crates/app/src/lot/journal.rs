@@ -18,10 +18,10 @@ use texts::Lang;
 
 /// Alarms that put the lot on hold until a person releases it.
 const HOLD_ALARMS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::RejectRateLimit];
-/// Alarm of a run whose references or reference parts give no calibration; it counts as a failed reference check.
+/// Alarm of a run whose references or reference parts give no calibration; counts as a failed reference check.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
-/// State of the run according to the rows so far; the next rows depend on it.
+/// State of the run according to the rows so far, on which the next rows depend.
 #[derive(Debug)]
 pub struct Journal {
     /// Name of the lot; `None` between lots.
@@ -121,7 +121,7 @@ impl Journal {
         })
     }
 
-    /// Returns the rows of an answered order: the order itself, and the change that it makes to alarms.
+    /// Returns the rows of an answered order: the order itself, and any change that the order makes to alarms.
     pub fn ordered(&self, it: &AnsweredOrder, at_us: i64) -> Vec<Row> {
         let by = &it.by;
         let mut rows = vec![Row::Order(OrderRecord {
@@ -144,7 +144,7 @@ impl Journal {
         self.check(&checked.text, checked.failure.as_ref(), at_us)
     }
 
-    /// Returns the row of a calibration, which is also a passed reference check.
+    /// Returns the row of the passed reference check that a calibration includes.
     pub fn calibrated(&self, at_us: i64) -> Option<Row> {
         self.check("calibration", None, at_us)
     }
@@ -184,7 +184,8 @@ impl Journal {
         })
     }
 
-    /// Returns the row that ends the run, with its cause, and the row with the state of the lot after it.
+    /// Returns the row that ends the run, with the cause, and the row with the new state of the lot, unless an alarm
+    /// holds the lot.
     pub fn ended(&self, ending: &Ending, exit: &Exit, at_us: i64) -> Vec<Row> {
         let Some(lot) = &self.lot else {
             return Vec::new();

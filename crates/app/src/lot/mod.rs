@@ -56,7 +56,7 @@ use tokio::sync::{mpsc, watch};
 pub struct LotRunner<'a> {
     /// History file.
     pub db: &'a Path,
-    /// Everything the run needs; its lot has passed admission.
+    /// Everything the run needs; admission has accepted the lot.
     pub context: LotContext<'a>,
     /// Controls shared with page, signals and scripts.
     pub controls: &'a Controls,
@@ -131,8 +131,7 @@ impl LotRunner<'_> {
         }
         let ended = running.end().await;
         lines.end_instruments().await;
-        // The cycle has dropped its sender, so this ends; the last snapshot is then on the page before the end of the
-        // run.
+        // Ends because the cycle has dropped its sender; so the page gets the last snapshot before the end of the run.
         showing.await?;
         if let Some(limiter) = limiter {
             limiter.abort();
@@ -167,7 +166,7 @@ pub(crate) fn lost(error: &anyhow::Error) -> Exit {
     Exit::Trouble(Cause::history_lost(&format!("{error:#}")))
 }
 
-/// Returns the pace of rig time: virtual, or that of the wall clock.
+/// Returns the pace of rig time: virtual, or the pace of the wall clock.
 pub(crate) fn pace_of(source: &RigSource) -> Pace {
     match source.is_virtual() {
         true => Pace::virtual_time(),
@@ -182,7 +181,7 @@ struct Stream<'a, 'b> {
     screen: Screen,
     traces: Traces,
     outer: &'b mut dyn Subscriber,
-    /// Tells the cycle whether rows are written.
+    /// Tells the cycle whether the history is written, in an outage, or given up.
     history: watch::Sender<HistoryState>,
     retry: HistoryRetry<'a>,
 }
@@ -230,7 +229,7 @@ impl Stream<'_, '_> {
         }
     }
 
-    /// Publishes the ordinal of the last part on the disk, and the end of an outage.
+    /// Publishes `ordinal`, the number of the last part on the disk, and ends an outage.
     fn written(&self, outage: &mut Option<Outage>, ordinal: u64, recorded: &AtomicU64) {
         recorded.fetch_max(ordinal, Ordering::AcqRel);
         if outage.take().is_some() {
@@ -239,7 +238,8 @@ impl Stream<'_, '_> {
         }
     }
 
-    /// Tells the cycle that rows are pending.
+    /// Tells the cycle that rows are pending; ends the run when the outage is too long, or when `error` does not come
+    /// from the history.
     fn unwritten(&mut self, outage: &mut Option<Outage>, error: &anyhow::Error) {
         let (now, give_up_s) = (self.retry.pace.now(), self.retry.give_up_s);
         if outage.is_none() {
@@ -280,10 +280,11 @@ impl Stream<'_, '_> {
         Ok(())
     }
 
-    /// Ends the run in the history: writes the parts that never landed, then the summary, then the end.
+    /// Passes the parts that never landed and then the summary to all subscribers; writes the end of the run into the
+    /// history.
     ///
     /// # Errors
-    /// Fails when the history cannot be written for too long; the run then stays open in it.
+    /// Fails when the history cannot be written for too long; the run then stays open in the history.
     async fn close(
         &mut self,
         ended: &Ended,

@@ -56,7 +56,7 @@ pub(crate) struct HistoryRetry<'a> {
     pub controls: &'a Controls,
     /// Clock of the rig.
     pub pace: Pace,
-    /// Longest outage, s.
+    /// Longest outage before the run gives up, s.
     pub give_up_s: f64,
 }
 
@@ -64,8 +64,8 @@ impl HistoryRetry<'_> {
     /// Repeats `write` until the history can be written, and shows the alarm on the page meanwhile.
     ///
     /// # Errors
-    /// Fails at once with an error that is not one of the history. Fails with the error of the history after a stop,
-    /// and when the outage is too long.
+    /// Fails at once with an error that does not come from the history. Fails with the error of the history after a
+    /// stop, and when the outage is too long.
     pub async fn until_written<T>(
         &self,
         mut write: impl AsyncFnMut() -> anyhow::Result<T>,

@@ -15,7 +15,7 @@ use units::Span;
 pub(super) struct PriorState {
     /// Calibration that is still valid and was made in the supply range of the recipe; `None`: the run calibrates.
     pub calibration: Option<Calibration>,
-    /// Use counts of the wearing parts, as the history has them.
+    /// Use counts of the wearing parts, from the history.
     pub uses: Uses,
     /// Unacknowledged alarms of earlier runs.
     pub alarms: Vec<UnacknowledgedAlarm>,
@@ -26,8 +26,8 @@ pub(super) struct PriorState {
 }
 
 impl PriorState {
-    /// Reads the state from `store`. The calibration of a simulated rig comes from the rig instead; a new one has only
-    /// what the certificates of the plant give.
+    /// Reads the state from `store`. Takes the calibration of a simulated rig from the live rig, or else from the
+    /// certificates of the plant, never from `store`.
     pub fn read(store: &Store, context: &LotContext) -> anyhow::Result<Self> {
         let simulated = context.is_simulated();
         let calibration = match context.purpose {
@@ -42,7 +42,7 @@ impl PriorState {
         let range = wiring.supply_range.as_ref();
         let calibration = calibration
             .filter(|it| range.is_none_or(|range| it.facts().range_factor == range.factor));
-        // The contents of an earlier run belong to another simulated rig.
+        // Parts that an earlier run left inside belong to another simulated rig.
         let left = match simulated && is_new(context) {
             true => Inside::default(),
             false => store.left_inside(simulated)?,
@@ -87,7 +87,7 @@ fn serials(store: &Store, context: &LotContext) -> anyhow::Result<Serials> {
     Ok(Serials::new(source, taken))
 }
 
-/// Returns the calibration of a live simulated rig.
+/// Returns the calibration of a live simulated rig; `None` without a live rig or a calibration.
 #[cfg(feature = "sim")]
 fn live_calibration(context: &LotContext) -> Option<Calibration> {
     context.source.live()?.calibration.clone()
@@ -124,7 +124,7 @@ fn uses(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
 }
 
 /// Returns the calibration that the certificates of the plant give; `None` for a kind that is calibrated on parts, and
-/// for a certificate that has run out, which refuses the lot before.
+/// for an expired certificate (admission has then refused the lot already).
 fn certified(context: &LotContext) -> Option<Calibration> {
     let made = Made {
         at_us: context.epoch_us,
@@ -136,7 +136,8 @@ fn certified(context: &LotContext) -> Option<Calibration> {
     found.filter(|it| it.facts().due_at_us > context.epoch_us)
 }
 
-/// Returns the stored calibration; `None` when it is overdue.
+/// Returns the newest stored calibration for the coil voltage of the recipe; `None` when it is missing, incomplete,
+/// overdue, dated in the future, or failed its verification.
 fn valid_calibration(store: &Store, context: &LotContext) -> anyhow::Result<Option<Calibration>> {
     let Some(nominal_v) = context.recipe.device.calibrated_for() else {
         return Ok(None);

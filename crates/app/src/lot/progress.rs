@@ -25,10 +25,10 @@ use units::RigTime;
 pub struct PartUnderWay {
     /// The part with its record and verdict.
     pub judged: Box<Judged>,
-    /// Time from the moment the previous part left the nest to the moment this one left it, seconds of rig time; `None`
-    /// before it leaves, and for the first part.
+    /// Rig time from the moment the previous part left the nest to the moment this part left the nest, seconds; `None`
+    /// while this part is in the nest, and for the first part.
     pub cycle_s: Option<f64>,
-    /// Number of reference parts judged so far, this part included if it is one.
+    /// Number of reference parts judged so far, including this part if it is a reference part.
     pub reference_count: u64,
 }
 
@@ -84,13 +84,14 @@ impl<'a> LotProgress<'a> {
         self.under_way.get(&ordinal)
     }
 
-    /// Returns judged parts per hour of rig time at `now`; `None` before the lot begins.
+    /// Returns judged parts per hour of rig time at `now`; `None` until the lot has begun.
     pub fn per_hour(&self, now: RigTime) -> Option<f64> {
         let began = self.lot_began?;
         self.counts.per_hour(now.since(began).as_seconds())
     }
 
-    /// Returns when the last part landed; before the first landing, when the lot began; before the lot, rig time zero.
+    /// Returns the rig time of the last landing; before the first landing, of the lot's beginning; before the lot,
+    /// zero.
     pub fn end(&self) -> RigTime {
         self.last_landed.or(self.lot_began).unwrap_or_default()
     }
@@ -117,7 +118,7 @@ impl<'a> LotProgress<'a> {
                 let mut active = listed.iter().filter(|it| it.is_active());
                 self.trouble_is_over = !active.any(|it| has_reaction(&it.alarm));
             }
-            // An order caused this state: the last trouble ended before.
+            // An order caused this state, because the last trouble has ended.
             Event::State(State::Aborting | State::Suspending) if self.trouble_is_over => {
                 self.trouble = None;
             }
@@ -156,7 +157,7 @@ impl<'a> LotProgress<'a> {
         assert!(before.is_none(), "part {ordinal} was judged twice");
     }
 
-    /// Makes a judged part void, because it goes to retest.
+    /// Changes the verdict of a judged part to void, because an interruption sends the part to retest.
     fn interrupted(&mut self, interrupted: &Interrupted) {
         let Some(part) = self.under_way.get_mut(&interrupted.ordinal) else {
             return;
@@ -186,8 +187,8 @@ impl<'a> LotProgress<'a> {
         parts.map(|part| LotEvent::PartDone(Box::new(part), None))
     }
 
-    /// Returns how the run ended: complete, stopped, or in trouble; the cause of trouble is an alarm, or `aborted`
-    /// without one.
+    /// Returns how the run ended: complete, stopped, or in trouble. The cause of trouble is an alarm, or else
+    /// `aborted`.
     pub fn exit(&self, ending: &Ending) -> Exit {
         match ending {
             Ending::Complete => Exit::Done,

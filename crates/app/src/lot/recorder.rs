@@ -1,10 +1,10 @@
 //! Writes the events of a run to the history.
 //!
 //! Between lots the history has no run until a part found inside needs a row; then the run of lot
-//! [`FOUND_LOT`](super::FOUND_LOT) begins. One transaction writes all pending rows; the recorder then publishes the
-//! ordinal (number within the run) of the last judged part, which allows the sorter to open its gripper. After a failed
-//! transaction its rows stay pending, in order. The database works on a blocking thread, one short task per
-//! transaction.
+//! [`FOUND_LOT`](super::FOUND_LOT) begins. One transaction writes all pending rows; [`Recorder::commit`] then returns
+//! the ordinal (number within the run) of the last judged part, whose publication allows the sorter to open its
+//! gripper. After a failed transaction its rows stay pending, in order. While the cycle runs, the database works on a
+//! blocking thread, one short task per transaction.
 
 use super::event::LotEvent;
 use super::journal::Journal;
@@ -40,7 +40,8 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the history and begins the lot's run; returns the state that the run takes over.
+    /// Opens the history and, except between lots, begins the run of the lot; returns the state that the run takes
+    /// over.
     pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, PriorState)> {
         let mut store = Store::open(db)?;
         store.claim(context.is_simulated())?;
@@ -130,7 +131,7 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // A landed part gets its rows with `PartDone`, a broken promise with its alarm.
+            // `PartDone` brings the row of a landed part, an alarm the row of a broken promise.
             Event::State(_)
             | Event::Left(_)
             | Event::Landed(_)
@@ -199,7 +200,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Queues a calibration that this run takes over from the certificates of the plant.
+    /// Queues a calibration that this run has just taken over from the certificates of the plant.
     fn certified(
         &mut self,
         context: &LotContext,
@@ -209,7 +210,7 @@ impl Recorder {
         made_now.map_or(Ok(()), |it| self.calibrated(it, context))
     }
 
-    /// Queues the contents of the machine; called before each transaction and at the end of the run.
+    /// Queues the contents of the machine and the use counts, before each transaction and at the end of the run.
     fn queue_contents(&mut self) {
         if let Some((inside, uses)) = self.contents.take() {
             self.rows.extend(self.journal.uses(uses));
@@ -217,11 +218,11 @@ impl Recorder {
         }
     }
 
-    /// Writes the pending rows; returns the ordinal of the last part now on the disk, or `None` when it is the same as
-    /// before.
+    /// Writes the pending rows; returns the ordinal of the last judged part now on the disk, or `None` when no judged
+    /// part was pending.
     ///
     /// # Errors
-    /// Fails when the transaction fails, which then writes nothing; the rows stay pending, in order.
+    /// Fails when the transaction fails and so writes nothing; the rows stay pending, in order.
     pub async fn commit(&mut self) -> anyhow::Result<Option<u64>> {
         if !self.rows.is_empty() {
             self.queue_contents();
@@ -254,7 +255,7 @@ impl Recorder {
     /// Writes the pending rows and closes the run.
     ///
     /// # Errors
-    /// Fails when the history cannot be written; what is not written yet stays pending.
+    /// Fails when the history cannot be written; rows that are not written yet stay pending.
     pub fn close(&mut self, lot: &LotProgress) -> anyhow::Result<()> {
         self.write()?;
         let end_us = lot.context.wall_us(lot.end());

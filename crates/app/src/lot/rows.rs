@@ -75,11 +75,11 @@ fn curves(trace: &Trace, wiring: &Wiring, at: impl Fn(RigTime) -> i64) -> Vec<Cu
     curves
 }
 
-/// Steps in which the history keeps temperatures and slopes of the air, in their units.
+/// Resolution of stored air temperatures (°C) and temperature rates (K/min).
 const AIR_STEP: f64 = 0.01;
 
-/// Returns the row of a batch with its curves: set point, reference and rate, and for each socket 1 when its contact opened
-/// and 0 when it closed.
+/// Returns the row of a batch with its curves: set point, reference and rate, and for each socket 1 when its contact
+/// opened and 0 when it closed.
 pub fn batch(context: &LotContext, ended: &EndedBatch) -> BatchRecord {
     let begin_us = context.wall_us(ended.curve.origin);
     let at_us = |t_s: f64| begin_us + (t_s * 1e6).round() as i64;
@@ -165,7 +165,7 @@ fn measurement(
     })
 }
 
-/// Returns the uncertainty budget as JSON; `None` when it holds a term that is not finite, because JSON has no
+/// Returns the uncertainty budget as JSON; `None` for a budget with a term that is not finite, because JSON has no
 /// infinity.
 fn budget(reading: &Reading) -> Option<String> {
     if !reading.expanded().is_finite() {

@@ -72,7 +72,7 @@ impl Subscriber for Screen {
     }
 }
 
-/// Returns true for a production part of a lot; reference parts and parts between lots are not shown.
+/// Returns true for a production part of a lot; the page shows neither reference parts nor parts judged between lots.
 fn is_shown(judged: &Judged, between_lots: bool) -> bool {
     !between_lots && matches!(judged.part.role, PartRole::Lot(_))
 }
@@ -98,7 +98,7 @@ fn begun(view: &mut View, context: &LotContext) {
     };
 }
 
-/// Shows the part judged last, with the counts.
+/// Shows the newly judged part, with the counts.
 fn judged(view: &mut View, lot: &LotProgress, judged: &Judged) {
     let verdicts = lot.counts.verdicts.iter();
     view.judged = lot.counts.parts();

@@ -24,9 +24,9 @@ pub struct Summary {
     pub pass: u64,
     /// Parts that failed.
     pub fail: u64,
-    /// Parts without a valid measurement.
+    /// Parts that could not be judged.
     pub void: u64,
-    /// Parts of the lot that were seen by the beam of a bin, by bin.
+    /// Parts of the lot that the beam of a bin has seen, by bin.
     pub bins: BTreeMap<String, u64>,
     /// Rig time from the beginning of the lot to the last landing, seconds.
     pub elapsed_s: f64,
@@ -93,13 +93,13 @@ impl Summary {
     }
 }
 
-/// A promise that did not hold, and the number of parts judged before that was noticed.
+/// A promise that did not hold, and the number of parts judged before the rig noticed.
 #[derive(Debug, Clone, Serialize)]
 pub struct BrokenPromise {
     /// Number of parts of the lot that were judged with the promised value.
     pub after_parts: u64,
-    /// The disproved standard deviation: as `rig.toml` or the recipe states it, as observed, and as the uncertainty budgets
-    /// of later parts use it.
+    /// The disproved standard deviation: as `rig.toml` or the recipe states it, as observed, and as the uncertainty
+    /// budgets of later parts use it.
     #[serde(flatten)]
     pub broken: Broken,
 }

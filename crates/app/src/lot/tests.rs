@@ -48,7 +48,7 @@ impl TestLot {
         }
     }
 
-    /// Runs the lot; `person` acts beside it with the sender of orders.
+    /// Runs the lot, and beside it `person`, with the sender of orders and the view.
     fn run<F: Future<Output = ()>>(
         &self,
         person: impl FnOnce(mpsc::Sender<OrderRequest>, watch::Receiver<View>) -> F,

@@ -1,6 +1,6 @@
-//! Plans for the elements of scenes: what blocks what, and in which order they come off and go on.
+//! Plans for the elements of scenes: which elements block which, and in which order they come off and go on.
 //!
-//! Each step of a plan is verified by the collision core with everything else in place before it is shown.
+//! The collision core verifies each step of a plan, with everything else in place, before a person sees the plan.
 
 mod maker;
 mod rows;
@@ -16,19 +16,20 @@ use history::tooling::{ChangeoverRow, PlanAction, PlanKind, ToolingPlan};
 use plan::{Demands, Interference, Outcome, Planned, Planner};
 use steps::Drafted;
 
-/// Answer to a question for a plan.
+/// Answer to a planning question.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Planning {
-    /// An order exists.
+    /// A sequence of steps exists.
     Plan(Box<ToolingPlan>),
-    /// No order exists, because these elements lock each other. In a changeover they belong to one of its two scenes.
+    /// No sequence exists, because these elements lock each other. In a changeover they belong to one of the two
+    /// scenes.
     Locked(LockedRow),
 }
 
 /// Returns the interference table of a scene, a row per element and direction.
 ///
 /// # Errors
-/// Fails when the collision core cannot decide a way.
+/// Fails when the collision core cannot decide whether a way is clear.
 pub fn interference(scene: &PlanScene) -> anyhow::Result<Vec<BlockersRow>> {
     let assembly = &scene.assembly;
     let tables = [
@@ -39,10 +40,10 @@ pub fn interference(scene: &PlanScene) -> anyhow::Result<Vec<BlockersRow>> {
     Ok(rows::blockers(assembly, tables))
 }
 
-/// Plans the disassembly of a scene, or with [`PlanAction::Add`] its assembly: the reverse.
+/// Plans the disassembly of a scene, or with [`PlanAction::Add`] its assembly, which is the reverse.
 ///
 /// # Errors
-/// Fails when demands contradict each other, or when the collision core refuses a step.
+/// Fails when `demands` contradict each other, or when the collision core refuses a step.
 pub fn order(scene: &PlanScene, demands: &Demands, action: PlanAction) -> anyhow::Result<Planning> {
     let planner = Planner::new(&scene.assembly, scene.priority.clone())?;
     let kind = match action {

@@ -11,22 +11,22 @@ use texts::{Lang, Message};
 pub struct BlockersRow {
     /// Id of the element that leaves.
     pub element: String,
-    /// Direction in which it leaves: `+x` to `-z`.
+    /// Direction in which `element` leaves: one of `+x`, `-x`, `+y`, `-y`, `+z`, `-z`.
     pub direction: &'static str,
-    /// Elements that it meets on its way out.
+    /// Elements that `element` meets on its way out.
     pub blockers: Vec<String>,
-    /// Those of `blockers` that touch the element and hold it where it is.
+    /// Those of `blockers` that touch `element` and hold it in place.
     pub local: Vec<String>,
-    /// Elements that its extruded box meets.
+    /// Elements that the bounding box of `element`, extruded in this direction, meets.
     pub boxes: Vec<String>,
 }
 
-/// A locked set.
+/// A set of elements that lock each other.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LockedRow {
     /// Ids of the elements that lock each other.
     pub locked: Vec<String>,
-    /// By id: the elements that block the ways of this element.
+    /// For the id of each locked element, the elements that block its ways.
     pub by: BTreeMap<String, Vec<String>>,
 }
 
@@ -60,7 +60,7 @@ pub(super) fn blockers(
         .collect()
 }
 
-/// Returns the row of a step. The legs of `step` already point the way of `action`: off the scene or onto it. `held_by`
+/// Returns the row of a step, whose legs already lead in the direction of `action`: off the scene or onto it. `held_by`
 /// lists the elements in place that hold the moving ones.
 pub(super) fn step(
     assembly: &Assembly,
@@ -119,7 +119,7 @@ impl BlockersRow {
 }
 
 impl LockedRow {
-    /// Returns the set as lines: the set, then what holds each of its elements.
+    /// Returns lines of text: the set, then for each of its elements what holds the element.
     pub fn say(&self, lang: Lang) -> Vec<String> {
         let set = Message::new("plan", "locked")
             .with("elements", self.locked.join(lang.comma()))

@@ -1,10 +1,10 @@
 //! A scene as an assembly: its elements with all actuators at rest.
 //!
 //! - Elements on one actuator that overlap are one piece of tooling; they move as a group.
-//! - A pair that `[[pair]]` ignores runs in each other by construction. It comes apart along the stroke of the actuator
-//!   between the two, and blocks across it.
-//! - `[[mate]]` is checked against the geometry; the axes of common-axis mates are the first directions of the rule of
-//!   the paper.
+//! - The elements of a pair that `[[pair]]` ignores slide in each other. The pair comes apart along the stroke of the
+//!   actuator between its elements, and blocks in every other direction.
+//! - `[[mate]]` is checked against the geometry; the greedy rule of crate `plan` tries the axes of common-axis mates
+//!   first.
 
 use super::tables::Tables;
 use crate::collision::{load_scene, read_scene};
@@ -18,7 +18,7 @@ use std::path::Path;
 /// A scene to plan with.
 #[derive(Debug)]
 pub struct PlanScene {
-    /// Name for people: that of the configuration, or the path of the file.
+    /// Name for people: the name in the configuration, or the path of the file.
     pub name: String,
     /// The elements at their places.
     pub assembly: Assembly,
@@ -26,7 +26,7 @@ pub struct PlanScene {
     pub groups: Vec<Vec<String>>,
     /// Mates, found from the geometry.
     pub mates: Vec<Mate>,
-    /// Directions that the rule of the paper tries first.
+    /// Directions that the greedy rule of crate `plan` tries first.
     pub priority: Vec<Direction>,
 }
 
@@ -118,7 +118,7 @@ fn elements(scene: &Scene) -> Vec<Element> {
     scene.elements.iter().map(element).collect()
 }
 
-/// Returns the pairs of elements on one actuator that overlap.
+/// Returns the pairs of overlapping elements that ride on the same actuator.
 fn joined(scene: &Scene) -> anyhow::Result<Vec<(usize, usize)>> {
     let depth_mm = Tolerance::default().contact_mm;
     let mut found = Vec::new();
@@ -144,7 +144,7 @@ fn joined(scene: &Scene) -> anyhow::Result<Vec<(usize, usize)>> {
     Ok(found)
 }
 
-/// Returns the pairs of elements that `[[pair]]` ignores, each with the axis of the actuator between the two.
+/// Returns the pairs of elements that `[[pair]]` ignores, each with the axis of the actuator between its elements.
 fn run_in_each_other(scene: &Scene, tables: &Tables) -> Vec<Guided> {
     let fitting = |pattern: &str| -> Vec<usize> {
         let fits = |id: &str| match pattern.strip_suffix('*') {
@@ -169,8 +169,8 @@ fn run_in_each_other(scene: &Scene, tables: &Tables) -> Vec<Guided> {
     found
 }
 
-/// Returns the axis along which two elements move against each other: that of the actuator that carries one of them
-/// alone; `None` when no single actuator does.
+/// Returns the axis along which two elements move against each other: the axis of the actuator that carries only one of
+/// them; `None` without such an actuator, and for a slanted axis.
 fn between(a: &Named, b: &Named, tables: &Tables) -> Option<usize> {
     match (&a.rides, &b.rides) {
         (Some(one), None) | (None, Some(one)) => tables.axis(one),
@@ -180,7 +180,7 @@ fn between(a: &Named, b: &Named, tables: &Tables) -> Option<usize> {
     }
 }
 
-/// Returns the groups that overlapping pairs form, by ids.
+/// Returns the groups that overlapping pairs form, each as the ids of its elements.
 fn groups(assembly: &Assembly, joined: &[(usize, usize)]) -> Vec<Vec<String>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (a, b) in joined {

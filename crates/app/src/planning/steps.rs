@@ -57,7 +57,7 @@ impl Drafted {
             PlanAction::Remove => (sequence.steps.clone(), 0),
             PlanAction::Add => (sequence.reversed(), self.plan.scenes.len() - 1),
         };
-        // The place in the disassembly of a step of this action, and the reverse.
+        // Converts a step's place in this action to its place in the disassembly, or back.
         let of_removal = |place: usize| match action {
             PlanAction::Remove => place,
             PlanAction::Add => count - 1 - place,
@@ -142,7 +142,7 @@ fn held_by(planner: &Planner, steps: &[Step]) -> Vec<Vec<usize>> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Spot {
     Rig,
-    /// On the bench, as part of the subassembly that the step at this place has taken off.
+    /// On the bench, as part of the subassembly that the step with this index took off.
     Bench(usize),
     Out,
 }

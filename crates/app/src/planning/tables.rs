@@ -1,4 +1,4 @@
-//! The tables of a scene file that only plans and the guard apply: actuators, pairs and mates.
+//! The tables of a scene file that plans need beside the bodies: actuators, pairs and mates.
 //!
 //! The reader of scenes has already checked each entry.
 
@@ -7,7 +7,7 @@ use lpm::scene::Format;
 use plan::MateWanted;
 use serde::Deserialize;
 
-/// The tables, as the file has them.
+/// The tables of one scene file.
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct Tables {
     #[serde(default)]
@@ -18,7 +18,7 @@ pub(super) struct Tables {
     pub(super) mate: Vec<MateTable>,
 }
 
-/// What a plan needs of `[[actuator]]`.
+/// The keys of `[[actuator]]` that a plan needs.
 #[derive(Debug, Deserialize)]
 pub(super) struct ActuatorTable {
     pub(super) id: String,
@@ -27,7 +27,7 @@ pub(super) struct ActuatorTable {
     pub(super) rides: Option<String>,
 }
 
-/// What a plan needs of `[[pair]]`.
+/// The keys of `[[pair]]` that a plan needs.
 #[derive(Debug, Deserialize)]
 pub(super) struct PairTable {
     pub(super) a: String,
@@ -42,11 +42,11 @@ pub(super) struct MateTable {
     pub(super) a: String,
     pub(super) b: String,
     pub(super) kind: MateKind,
-    /// Gap up to which the two count as mated, mm.
+    /// Gap up to which the elements count as mated, mm.
     pub(super) tolerance_mm: Option<f64>,
 }
 
-/// Kind of a mate in the file.
+/// Kind of a mate, as the file names it.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum MateKind {
@@ -66,7 +66,7 @@ impl MateKind {
 }
 
 impl Tables {
-    /// Reads the tables of a scene that has been read before.
+    /// Reads the tables of a scene file that the reader of scenes has accepted.
     pub(super) fn read(text: &str, format: Format) -> anyhow::Result<Tables> {
         let text = text.trim_start_matches('\u{feff}');
         match format {
@@ -75,7 +75,7 @@ impl Tables {
         }
     }
 
-    /// Returns the axis along which an element that rides on `actuator` moves, 0 to 2; `None` for a slanted one.
+    /// Returns the axis along which `actuator` moves, 0 to 2 for x to z; `None` for a slanted stroke.
     pub(super) fn axis(&self, actuator: &str) -> Option<usize> {
         let table = self.actuator.iter().find(|it| it.id == actuator)?;
         let moves = |axis: &usize| table.axis[*axis] != 0.0;
@@ -83,7 +83,7 @@ impl Tables {
         axes.next().filter(|_| axes.next().is_none())
     }
 
-    /// Returns true when `actuator` is carried by `carrier`, directly or not.
+    /// Returns true when `carrier` carries `actuator`, directly or through other actuators.
     pub(super) fn is_carried(&self, actuator: &str, carrier: &str) -> bool {
         let above = |id: &str| {
             let table = self.actuator.iter().find(|it| it.id == id);

@@ -1,9 +1,9 @@
 //! Controls a rig for a whole day: serves page and API, and runs one lot after another.
 //!
 //! At every moment one *run* (a control cycle, from its start to its end) controls the rig; the command `run` makes one
-//! too. Between lots, this is a run without a lot: the machine keeps its state until an operator resets it, the page
-//! shows inputs and alarms, motions by hand are possible, and the rig discharges parts found inside. A lot that a
-//! person orders at the page and that is admitted ([`router`]) ends that run. The run of the lot then begins as every
+//! too. Between lots the run has no lot: the machine keeps its state until an operator resets it, the page shows inputs
+//! and alarms, motions by hand are possible, and the rig discharges parts found inside. When a person orders a lot at
+//! the page and the lot is admitted ([`router`]), the run between lots ends. The run of the lot then begins as every
 //! lot does: it verifies the modules, homes the machine, and calibrates the rig if necessary. After the lot the rig is
 //! between lots again.
 //!
@@ -17,8 +17,8 @@
 //! | the history cannot be written | aborts; continues after clear, reset and start | writes what is pending once it can; ends after `give_up_s`: 3 |
 //! | an assertion fails | makes outputs safe, is open | ends: 3 |
 //!
-//! A simulated rig stays the same throughout. Before every lot the program empties its magazine and loads it, reference
-//! parts first, as a person would.
+//! One simulated rig lives from the start of the program to its end. Before every lot the program empties the magazine
+//! and loads it, reference parts first, as a person would.
 
 mod notify;
 mod page;
@@ -53,7 +53,7 @@ use tokio::sync::mpsc;
 /// An admitted lot with its recipe.
 type AdmittedLot = (LotOrder, Arc<Recipe>);
 
-/// A rig that this program controls for the day: everything that stays from lot to lot.
+/// A rig that this program controls for the day: everything that outlives a lot.
 pub struct Service {
     files: Files,
     plant: Arc<Plant>,
@@ -218,8 +218,8 @@ impl Service {
         runner.run(OrderQueue::from(taken), outer).await
     }
 
-    /// Returns the rig for the next run. Loads a simulated rig for the lot, if there is one; gives it no calibration,
-    /// so that the run calibrates.
+    /// Returns the rig for the next run. Loads the magazine of a simulated rig for `lot`, if given; a simulated rig
+    /// comes without a calibration, so the run calibrates.
     fn current_source(&self, lot: Option<&LotOrder>) -> anyhow::Result<RigSource> {
         match &self.source {
             RigSource::Serial(_) => {}
@@ -256,7 +256,7 @@ fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::
     })
 }
 
-/// Returns the order of the run between lots; it names the first recipe, which gives the size of a part found inside.
+/// Returns the order of the run between lots, with the first recipe, which gives the size of a part found inside.
 fn between(config: &Folder) -> anyhow::Result<LotOrder> {
     let Some(recipe) = recipe_names(config).into_iter().next() else {
         bail!(

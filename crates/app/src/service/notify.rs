@@ -15,7 +15,7 @@ use machine::view::View;
 use sd_notify::NotifyState;
 use std::time::{Duration, Instant};
 
-/// Pings within the time after which systemd considers the service dead.
+/// Number of pings within `WatchdogSec`, after which systemd considers a silent service dead.
 const PINGS: u32 = 4;
 
 /// State of the service as systemd knows it.
@@ -58,7 +58,7 @@ impl Notifier {
     /// Returns the messages that follow a view at `now`.
     fn messages(&mut self, view: &View, is_stopping: bool, now: Instant) -> Vec<NotifyState<'_>> {
         let mut messages = Vec::new();
-        // Only a cycle sets the time of the view.
+        // Only a cycle sets `at_us`, so a cycle is running.
         if view.at_us > 0 && !std::mem::replace(&mut self.is_ready, true) {
             messages.push(NotifyState::Ready);
         }

@@ -2,9 +2,9 @@
 //!
 //! - `start` with a lot goes to the station once the lot is admitted. The station ends the present run when the machine
 //!   rests; the run of the new lot follows.
-//! - `hold_lot` and `close_lot` for the lot under way go to its station; `release_lot` and `reopen_lot` for it are
-//!   refused.
-//! - These orders for any other lot, and `replaced`, are written into the history.
+//! - `hold_lot` and `close_lot` for the lot under way go to the station; the router refuses `release_lot` and
+//!   `reopen_lot` for this lot.
+//! - The router writes these four orders for any other lot, and `replaced`, into the history.
 //! - Every other order goes straight to the station.
 //!
 //! The router sends refused orders to the station too, marked as denied, because the audit has one writer during a run.
@@ -24,12 +24,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use texts::Message;
 use tokio::sync::{mpsc, oneshot};
 
-/// What follows a run that an order ends: another lot, or a hold.
+/// Consequence of an order that ends a run: another lot, or a hold.
 #[derive(Debug)]
 pub enum AfterRun {
     /// Another lot.
     Lot(Box<AdmittedLot>),
-    /// This order of this person puts the lot on hold.
+    /// This order by this person puts the lot on hold.
     Hold(Box<(Order, By)>),
 }
 
@@ -48,7 +48,7 @@ struct RouterState {
     plant: Arc<Plant>,
     source: RigSource,
     run: Mutex<ActiveRun>,
-    /// Lock that a task holds while it handles an order about lots, so that these orders are handled one after another.
+    /// Lock that a task holds while it handles an order about lots: only one such order is handled at a time.
     turn: tokio::sync::Mutex<()>,
 }
 
@@ -77,7 +77,7 @@ impl OrderRouter {
         };
     }
 
-    /// Takes and returns what follows the run that an order ended: a lot or a hold.
+    /// Removes and returns the note of what follows the ended run: a lot or a hold.
     pub fn next(&self) -> Option<AfterRun> {
         self.run().next.take()
     }
@@ -121,8 +121,8 @@ impl OrderRouter {
         }
     }
 
-    /// Notes what follows the run. The caller does this before it passes the order on, because the station ends the run
-    /// at once. Fails when an earlier note has not been taken yet.
+    /// Notes what follows the run; fails while an earlier note is pending. The caller notes this before it passes the
+    /// order on, because the station may end the run as soon as it has the order.
     fn set_next(&self, next: Option<AfterRun>) -> Result<(), Message> {
         let mut run = self.run();
         if run.next.is_some() {
@@ -188,7 +188,7 @@ impl OrderRouter {
         asked.answer(Err(why));
     }
 
-    /// Passes the order to the current run, and the run's answer back; returns whether the run accepted the order.
+    /// Passes the order to the current run, and the run's answer back; returns true when the run accepts the order.
     async fn pass_on(&self, asked: OrderRequest) -> bool {
         let (answer, answered) = oneshot::channel();
         let (order, by) = (asked.order.clone(), asked.by.clone());

@@ -1,11 +1,11 @@
 //! Plays a story: scripted faults and orders on the simulated rig, with a line-by-line account of what follows.
 //!
 //! A script ([`script`]) names faults and operator orders, each after an event instead of at a time, so a faster line
-//! gives the same story. The `narrator` writes what a mechanic beside the rig sees. It counts whole seconds from the
-//! first trouble and leaves out unrelated events.
+//! gives the same story. The `narrator` writes what a mechanic beside the rig sees, leaves out unrelated events, and
+//! counts whole seconds from the first trouble.
 //!
-//! A story is attended: alarms and stops do not end the run. It ends when the script is played and the lot complete, or
-//! after [`SILENCE_TIMEOUT`] without an event.
+//! A story is attended: alarms and stops do not end the run. The story ends when the script is played and the lot is
+//! complete or stopped, or after [`SILENCE_TIMEOUT`] without an event.
 
 mod narrator;
 mod play;
@@ -28,8 +28,8 @@ use std::fs::File;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// Plays `script` during the lot of `order` on a new rig; writes every action of an output to `journal`. Returns the
-/// account and the exit; `outer` receives every event.
+/// Plays `script` during the lot of `order` on a new rig; writes the rig's journal (changes of outputs, faults, expired
+/// watchdogs) to `journal`. Returns the account and the exit; `outer` receives every event.
 ///
 /// # Errors
 /// Fails on bad input, as any lot does.

@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use texts::{Lang, Message};
 use units::RigTime;
 
-/// What a line about a part says.
+/// Words of a line about a part.
 #[derive(Debug)]
 struct Told {
     name: String,
@@ -45,10 +45,10 @@ impl Told {
 #[derive(Debug)]
 pub struct Narrator {
     text: String,
-    /// Rig time from which the account counts seconds: the first action of the script or the first alarm; `None` before
-    /// it.
+    /// Rig time of the first action of the script or the first alarm, from which the account counts seconds; `None`
+    /// before both.
     zero: Option<RigTime>,
-    /// Each part that is judged, by ordinal.
+    /// Each judged part, by ordinal.
     parts: BTreeMap<u64, Told>,
     explained: BTreeSet<AlarmCode>,
     /// Alarms whose cause is present.

@@ -21,7 +21,7 @@ use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
 use units::{RigTime, Span};
 
-/// Longest time without an event; the story ends after it.
+/// Longest time without an event; a longer silence ends the story.
 pub const SILENCE_TIMEOUT: Span = Span::ms(180_000);
 /// Result of a story.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ pub(super) struct Player {
     journal: Option<File>,
 }
 
-/// Events so far that a step of the script may wait for.
+/// Events so far for which a step of the script may wait.
 #[derive(Debug, Default)]
 struct Observed {
     lot: bool,
@@ -53,7 +53,7 @@ struct Observed {
 }
 
 impl Player {
-    /// Prepares a script; writes every action of an output to `journal`, if given.
+    /// Prepares a script; the player writes the rig's journal to `journal`, if given.
     pub fn new(script: Script, journal: Option<File>) -> Self {
         Self { script, journal }
     }

@@ -9,7 +9,7 @@
 //! after state Aborted +5      order clear
 //! after state Stopped         order jog motion=probes_up
 //! ```
-//! The first comment is the title. Lines that begin with `after` are carried out in sequence.
+//! The first comment is the title. The player carries out the lines that begin with `after` in sequence.
 
 use anyhow::{Context, bail};
 use machine::station::packml::State;
@@ -45,11 +45,10 @@ pub struct Step {
     pub action: Action,
 }
 
-/// Event that triggers a step. An event that is already past triggers the step at once, but a state must be the
-/// present one.
+/// Event that triggers a step. A past event triggers the step at once, but a state only while the machine is in it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Awaited {
-    /// The lot itself has begun.
+    /// The lot has begun, after calibration and reference parts.
     Lot,
     /// The machine as a whole is in this PackML state.
     State(State),
@@ -59,7 +58,7 @@ pub enum Awaited {
     Judged(u64),
     /// The part of the lot with this number has left the nest.
     Left(u64),
-    /// The beam of its bin has seen the part of the lot with this number.
+    /// The beam of a bin has seen the part of the lot with this number.
     Landed(u64),
 }
 

@@ -61,7 +61,7 @@ impl PersonChange {
         what
     }
 
-    /// Carries out the change; returns the password if it drew one.
+    /// Carries out the change; returns the new password if the rig drew it.
     ///
     /// # Errors
     /// Fails for an unknown person, a taken or malformed name, a password of a wrong length, and when no engineer would
@@ -100,8 +100,8 @@ fn given_or_drawn(given: Option<&String>) -> Result<(String, Option<String>)> {
 }
 
 /// Runs `work`, notes it with its outcome in the audit of orders in the history `db`, and returns what `work` returned.
-/// `what` describes the result of `work` for the audit, `refusal` its error. Opens the audit first, and does not run
-/// `work` without it.
+/// For the audit, `what` describes the result of `work` and `refusal` describes its error. Opens the audit first, and
+/// does not run `work` when that fails.
 ///
 /// # Errors
 /// Fails when the audit does not open, and when `work` succeeds but the audit cannot be written.

@@ -82,7 +82,7 @@ pub enum AccessError {
 }
 
 impl AccessError {
-    /// Returns the refusal in both languages; a failure of the program itself is described in English in both.
+    /// Returns the refusal in both languages; a failure of the program itself has the same English description in both.
     #[must_use]
     pub fn message(&self) -> Message {
         match self {

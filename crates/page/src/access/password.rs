@@ -11,7 +11,7 @@ use data_encoding::HEXLOWER;
 
 /// Least length of a password, characters (NIST SP 800-63B).
 const LEAST: usize = 8;
-/// Greatest length of a password, characters: it bounds the time of hashing.
+/// Greatest length of a password, characters: this limit bounds the time of hashing.
 const MOST: usize = 200;
 
 /// Returns the Argon2id string of `password`; takes about 20 ms. Fails when the length is out of range.
@@ -29,7 +29,8 @@ pub(super) fn hash(password: &str) -> Result<String> {
     Ok(hash.to_string())
 }
 
-/// Checks `password` against the Argon2id string `kept`; takes as long as [`hash`].
+/// Checks `password` against the Argon2id string `kept`; takes as long as [`hash`], but answers at once for a password
+/// that is too long.
 pub(super) fn matches(password: &str, kept: &str) -> Result<bool> {
     if password.chars().count() > MOST {
         return Ok(false);

@@ -40,7 +40,7 @@ pub struct Person {
     pub role: Role,
 }
 
-/// A person as engineers see it in the list.
+/// Entry of the list of people that engineers see.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Entry {
     /// Name and role.
@@ -48,7 +48,7 @@ pub struct Entry {
     pub person: Person,
     /// Time at which the person was added.
     pub since: Moment,
-    /// Time until which wrong passwords keep the person from logging in; `None` when they do not.
+    /// Time until which wrong passwords keep the person from logging in; `None` when the person may log in.
     pub locked_until: Option<Moment>,
 }
 
@@ -88,7 +88,7 @@ impl Register {
     /// Opens an existing file for reading; changes neither the file nor its schema.
     ///
     /// # Errors
-    /// Fails for a missing or empty file, for one of another program or of a later version, and when SQLite fails.
+    /// Fails for a missing or empty file, for a file of another program or of a later version, and when SQLite fails.
     pub fn open_unchanged(path: &Path) -> Result<Self> {
         match Self::connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)? {
             (_, 0) => Err(foreign(path, 0, 0)),
@@ -116,7 +116,7 @@ impl Register {
         }
     }
 
-    /// Copies the file to `target`, which must not exist and gets the same access rights.
+    /// Copies the file to `target`; creates `target` as a file that only this user can read or write.
     ///
     /// # Errors
     /// Fails when `target` is not empty, or cannot be written.
@@ -166,7 +166,7 @@ impl Register {
         people.collect::<rusqlite::Result<_>>().doing(DOING)
     }
 
-    /// Returns all people in order of their names; an entry whose login is locked at `now_us` has the end of the lock.
+    /// Returns all people in order of their names, each with the end of a lock that holds at `now_us`.
     pub fn entries(&self, now_us: i64) -> Result<Vec<Entry>> {
         const DOING: &str = "listing people";
         let mut rows = self
@@ -207,7 +207,7 @@ impl Register {
         }
     }
 
-    /// Changes the password and ends the person's sessions. Fails for an unknown name.
+    /// Changes the password and ends the person's sessions. Fails for an unknown name and a wrong length.
     pub fn set_password(&mut self, name: &str, password: &str) -> Result<()> {
         const DOING: &str = "changing a password";
         let hash = password::hash(password)?;
@@ -258,8 +258,8 @@ impl Register {
     }
 }
 
-/// Creates the file, if it is missing, as this user's own: no other user can read or write it, because it holds hashes
-/// of passwords. Ignores a failure, because opening the file afterwards reports it.
+/// Creates a missing file so that no other user can read or write it, because the file holds hashes of passwords.
+/// Ignores a failure, because the caller then fails to open the file.
 fn own(path: &Path) {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
@@ -268,7 +268,7 @@ fn own(path: &Path) {
     let _ = options.open(path);
 }
 
-/// Runs the SQL `first`, then brings the file from schema 1 to the present one, in one transaction.
+/// Runs the SQL `first`, then brings the file from schema 1 to the present schema, in one transaction.
 fn make(connection: &Connection, first: &str) -> rusqlite::Result<()> {
     connection.execute_batch(&format!(
         "BEGIN IMMEDIATE; {first} {FAILURES} PRAGMA user_version = {SCHEMA}; \

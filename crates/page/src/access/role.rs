@@ -12,9 +12,10 @@ use utoipa::ToSchema;
 pub enum Role {
     /// Runs lots, gives every PackML command, acknowledges alarms.
     Operator,
-    /// Also jogs and steps actuators, changes the mode, shelves alarms, releases held lots and resets wear counters.
+    /// Also jogs and steps actuators, changes the mode, shelves alarms, releases held lots, resets wear counters, and
+    /// carries out plans for tooling.
     Maintainer,
-    /// Also changes recipes and people, and reopens complete lots.
+    /// Also changes and approves recipes, changes people, and reopens complete lots.
     Engineer,
 }
 
@@ -39,7 +40,7 @@ impl fmt::Display for Role {
     }
 }
 
-/// Error of a word that names no role.
+/// Error: the word names no role.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0:?}: expected operator, maintainer or engineer")]
 pub struct NoRole(String);

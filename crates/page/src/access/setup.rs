@@ -5,7 +5,7 @@ use super::password;
 use data_encoding::BASE32;
 use std::fmt;
 
-/// Random bytes of a code. 40 bits suffice, because only five wrong codes in five minutes are checked.
+/// Random bytes of a code. 40 bits suffice, because the register checks at most five wrong codes in five minutes.
 const BYTES: usize = 5;
 
 /// A code of eight letters and digits that the program prints while there is no engineer, and keeps in memory only.

@@ -5,7 +5,7 @@ use crate::error::Refusal;
 use crate::orders;
 use serde_json::{Map, Value, json};
 
-/// Meaning of every status that a route may refuse with.
+/// Meaning of every status with which a route may refuse.
 const REFUSALS: [(u16, &str); 11] = [
     (400, "The request is malformed; the reason says why."),
     (

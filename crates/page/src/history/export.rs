@@ -1,7 +1,7 @@
-//! `/api/history/export.csv` and `.xlsx`: `history export` over HTTP. CSV is streamed without a limit; a spreadsheet is
-//! complete in memory before it is sent, so [`SHEET_PARTS`] limits its size.
+//! `/api/history/export.csv` and `.xlsx`: `history export` over HTTP. The server streams CSV without a limit, but
+//! builds a whole spreadsheet in memory before sending, so [`SHEET_PARTS`] limits its size.
 //!
-//! `history prune` does not count such an export as a copy, because the server cannot know whether it arrived.
+//! `history prune` does not count such an export as a copy, because the server cannot know whether the client got it.
 
 use super::super::error::{ApiError, blocking};
 use super::members::{Printed, filter};

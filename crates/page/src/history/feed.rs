@@ -1,8 +1,8 @@
 //! Streams answers from the history file to the client, one part at a time: memory does not grow with the answer.
 //!
 //! The reader sends pieces of about 32 kB. It drops a client that takes no piece for [`CLIENT_TIMEOUT`], so that no
-//! reader keeps the file open for ever. After an error in the middle the final chunk is missing, so that the client
-//! sees the answer as incomplete.
+//! reader keeps the file open for ever. After an error in the middle the final HTTP chunk is missing, so that the
+//! client sees that the answer is incomplete.
 
 use axum::body::{Body, Bytes};
 use futures_util::stream;
@@ -16,13 +16,13 @@ use tokio::time::timeout;
 
 /// Longest time for which a client may take no piece.
 const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
-/// Number of bytes that are collected before they are sent as a piece.
+/// Number of bytes that the reader collects before it sends them as a piece.
 const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;
 
-/// Streams what `write` writes, on a blocking thread that keeps the archive, and the permit to read it (`place`), until
-/// the end.
+/// Streams the output of `write`, which runs on a blocking thread; the thread keeps the archive and `place`, the permit
+/// to read, until the end.
 pub(super) fn streamed(
     (archive, place): (Archive, impl Send + 'static),
     write: impl FnOnce(&Archive, &mut Pieces) -> io::Result<()> + Send + 'static,
@@ -32,7 +32,7 @@ pub(super) fn streamed(
     spawn_blocking(move || {
         let mut out = Pieces::new(runtime, sender);
         if let Err(error) = write(&archive, &mut out).and_then(|()| out.send_piece()) {
-            // Fails only when the client has gone.
+            // Sending fails only when the client has gone.
             let _ = out.send(Err(error));
         }
         drop(place);

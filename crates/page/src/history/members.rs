@@ -1,4 +1,4 @@
-//! Parts of the query strings of the history, and the filter that they make.
+//! Parts of the query strings of the history, and the filter made of them.
 
 use super::super::error::ApiError;
 use crate::asked::members;
@@ -37,7 +37,7 @@ pub(crate) struct OneLot {
     /// Name of the lot.
     #[param(example = "L-1122")]
     lot: String,
-    /// Number of the run within its lot; all runs without it.
+    /// Number of the run within its lot; all runs when absent.
     #[param(example = 1)]
     run: Option<u32>,
     /// Name of the recipe.
@@ -51,7 +51,7 @@ pub(crate) struct TimeSpan {
     /// Earliest time: RFC 3339, or local as `2026-11-22`, `today`, `-8h`.
     #[param(value_type = Option<String>, example = "2026-11-22T00:00:00Z")]
     pub since: Option<Moment>,
-    /// Time before which the entries lie, in the forms of `since`.
+    /// Only entries before this time; same forms as `since`.
     #[param(value_type = Option<String>, example = "2026-11-23T00:00:00Z")]
     pub until: Option<Moment>,
 }
@@ -82,7 +82,7 @@ pub(crate) struct OfParts {
     /// `lot` (when absent), `golden` for reference parts, `all`.
     #[param(schema_with = kinds)]
     kind: Option<String>,
-    /// True: only suspect parts, which were judged before a failed reference check and after the check before it.
+    /// True: only suspect parts, judged between a failed reference check and the reference check before it.
     #[param(example = false)]
     suspect: Option<bool>,
 }
@@ -112,7 +112,7 @@ pub(crate) struct OneParameter {
 /// A control chart.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct Charting {
-    /// Parameter key with its unit; without it the share of each bin.
+    /// Parameter key with its unit; when absent, the answer charts the share of each bin.
     #[param(example = some_parameter)]
     pub param: Option<String>,
     /// Parts of a subgroup, 1 to 10; 1 when absent.
@@ -129,7 +129,7 @@ pub(crate) struct Charting {
 /// A printed page or a spreadsheet.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct Printed {
-    /// Language, `zh` or `en`; when absent, that of `Accept-Language`, without it English.
+    /// Language, `zh` or `en`; when absent, the language of `Accept-Language`, else English.
     #[param(inline)]
     pub lang: Option<Lang>,
 }
@@ -154,7 +154,7 @@ fn words(words: &[&'static str], about: &str) -> Object {
         .build()
 }
 
-/// Returns the key of some parameter, for the examples of the document.
+/// Returns the key of some parameter, for the examples of the OpenAPI document.
 fn some_parameter() -> &'static str {
     Characteristic::all().next().map_or("", Characteristic::key)
 }
@@ -175,7 +175,7 @@ pub(crate) trait Selects {
     fn select(self, filter: &mut Filter);
 }
 
-/// Returns the filter that all parts make together.
+/// Returns the filter with the restrictions of all `parts`.
 pub(crate) fn filter(parts: impl Selects) -> Filter {
     let mut filter = Filter::default();
     parts.select(&mut filter);
@@ -234,7 +234,7 @@ macro_rules! tuples {
 tuples! { A B; A B C; A B C D; A B C D E; }
 
 impl Charting {
-    /// Returns the number of points to send. Fails when it is not from 1 to [`MOST_SHOWN`].
+    /// Returns the number of points to send. Fails when `last` is not from 1 to [`MOST_SHOWN`].
     pub fn last(&self) -> Result<usize, ApiError> {
         let last = ApiError::ranged("last", self.last, SHOWN, MOST_SHOWN)?;
         Ok(usize::try_from(last).unwrap_or(usize::MAX))

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-/// Largest number of readers at the same time; further ones wait.
+/// Greatest number of readers at the same time; further readers wait.
 const AT_ONCE: usize = 4;
 
 /// Plant and name of a rig.
@@ -22,12 +22,12 @@ pub struct RigName {
     pub rig: String,
 }
 
-/// Where the histories are: the file of a rig, or a database with many.
+/// Source of histories: the file of one rig, or a database with the histories of many.
 pub trait Archives: Debug + Send + Sync {
-    /// Opens the history of a rig, or without one that of all. Blocks.
+    /// Opens the history of `rig`; with `None`, the history of all rigs. Blocks.
     ///
     /// # Errors
-    /// Fails when it cannot be read, and when there is no such rig.
+    /// Fails when the history cannot be read, and when the source has no such rig.
     fn open(&self, rig: Option<&RigName>) -> history::Result<Archive>;
 }
 
@@ -38,7 +38,8 @@ impl Archives for PathBuf {
     }
 }
 
-/// The histories and the permits to read them. As an input of a route, reads that of the rig that the path names.
+/// The histories and the permits to read them. A route that takes this input reads the history of the rig in its path,
+/// or of all rigs when the path names none.
 #[derive(Debug, Clone)]
 pub(crate) struct Readers {
     archives: Arc<dyn Archives>,

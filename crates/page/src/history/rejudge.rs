@@ -23,7 +23,7 @@ pub(crate) struct RejudgeQuery {
     /// Name of a recipe of the plant.
     #[param(example = "jzc-22f-012")]
     recipe: String,
-    /// Number of the run; all runs without it.
+    /// Number of the run; all runs when absent.
     #[param(example = 1)]
     run: Option<u32>,
     /// True: only parts whose verdict changes.

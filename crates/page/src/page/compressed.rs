@@ -39,7 +39,7 @@ impl CompressedBody {
     }
 }
 
-/// Checks that the client names gzip, with any weight but zero (RFC 9110, clause 12.5.3).
+/// Returns true when the client names gzip with a weight above zero (RFC 9110, clause 12.5.3).
 fn accepts_gzip(headers: &HeaderMap) -> bool {
     let accepted = headers.get_all(ACCEPT_ENCODING).iter();
     let mut codings = accepted

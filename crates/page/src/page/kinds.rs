@@ -5,8 +5,8 @@ use machine::dut::{Bin, Characteristic, Kind};
 use serde_json::{Value, json};
 use texts::Lang;
 
-/// Families of texts that the answer to `GET /` omits: they reach the page inside alarms, reasons and refusals, or
-/// appear in print only.
+/// Families of texts that the answer to `GET /` omits: these texts reach the page inside alarms, reasons and refusals,
+/// or appear in print only.
 const ELSEWHERE: [&str; 32] = [
     "alarm",
     "batch",

@@ -33,14 +33,14 @@ pub(super) const SOURCES: [[&str; 3]; 11] = {
     ]
 };
 
-/// Scripts by path; the path holds a hash of the script, so that a browser may cache it for ever.
+/// Scripts by path; the path holds a hash of the script, so that a browser may cache the script for ever.
 pub(super) static SCRIPTS: LazyLock<BTreeMap<String, CompressedBody>> = LazyLock::new(|| {
     let body = |text| CompressedBody::new("text/javascript; charset=utf-8", text);
     let compressed = |(path, text)| (path, body(text));
     SOURCES.map(script).into_iter().map(compressed).collect()
 });
 
-/// Returns the path of the script of each page, `{page: path}`, of the scripts that `has` selects by name.
+/// Returns `{page: path}`, the path of the script of each page, for the scripts that `has` selects by name.
 pub(super) fn json(has: impl Fn(&str) -> bool) -> String {
     let sources = SOURCES.iter().filter(|source| has(source[0]));
     let paths = sources.flat_map(|source| {

@@ -224,7 +224,7 @@ fn every_body_of_the_scene_has_a_text() {
     }
 }
 
-/// A script fetched later sees the names of the answer to `GET /`; a second definition would hide the first silently.
+/// A script fetched later shares the names of the answer to `GET /`: a second definition would silently hide the first.
 #[test]
 fn every_top_level_name_of_the_scripts_is_unique() {
     let of_rig = unique_names(&code(SCRIPT, |_| true));

@@ -15,7 +15,7 @@ pub struct PlanFault(pub String);
 
 /// Makes plans; crate `app` implements it.
 pub trait PlanMaker: Debug + Send + Sync {
-    /// Returns the scenes of the configuration, that of the rig first.
+    /// Returns the scenes of the configuration, the scene of the rig first.
     ///
     /// # Errors
     /// Fails on a faulty scene.
@@ -31,10 +31,10 @@ pub trait PlanMaker: Debug + Send + Sync {
 /// A scene of the configuration.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct ListedScene {
-    /// Name of its file, relative to the folder of the configuration.
+    /// Name of the scene file, relative to the folder of the configuration.
     #[schema(example = "scene.toml")]
     pub name: String,
-    /// Ids of its elements.
+    /// Ids of the elements in the scene.
     pub elements: Vec<String>,
 }
 
@@ -44,16 +44,16 @@ pub struct ListedScene {
 pub struct PlanQuestion {
     /// Kind of the plan.
     pub kind: PlanKind,
-    /// Scene that the plan begins with.
+    /// Scene with which the plan begins.
     #[schema(example = "scene.toml")]
     pub scene: String,
     /// Scene to which a changeover leads.
     #[schema(example = "nests/body-18x12.toml")]
     pub to: Option<String>,
-    /// Ids of the elements that a disassembly must take off; it also takes off whatever is in their way.
+    /// Ids of the elements that a disassembly must take off; the plan also takes off whatever is in their way.
     #[serde(default)]
     pub remove: Vec<String>,
-    /// Directions in which no element may leave, `+x` to `-z`.
+    /// Directions in which no element may leave: `+x`, `-x`, `+y`, `-y`, `+z`, `-z`.
     #[serde(default)]
     pub forbid: Vec<String>,
 }
@@ -61,9 +61,9 @@ pub struct PlanQuestion {
 /// Answer of a [`PlanMaker`].
 #[derive(Debug, Clone)]
 pub enum PlanAnswer {
-    /// An order exists.
+    /// A sequence of steps exists.
     Plan(Box<ToolingPlan>),
-    /// No order exists; these elements lock each other.
+    /// No sequence exists; these elements lock each other.
     Locked(Vec<String>),
 }
 
@@ -71,7 +71,7 @@ pub enum PlanAnswer {
 #[derive(Debug, Serialize, ToSchema)]
 pub(crate) struct ShownPlan {
     kind: PlanKind,
-    /// Scene that the plan begins with.
+    /// Scene with which the plan begins.
     scene: String,
     /// Scene to which a changeover leads.
     to: Option<String>,
@@ -79,7 +79,7 @@ pub(crate) struct ShownPlan {
     remove: Vec<String>,
     /// What a changeover does with each element.
     summary: Option<ChangeoverRow>,
-    /// SVG with all bodies, to which the pictures refer; it must be in the same document.
+    /// SVG with all bodies, to which the pictures refer; must be in the same document as the pictures.
     shapes: String,
     steps: Vec<ShownStep>,
 }
@@ -93,7 +93,7 @@ pub(crate) struct ShownStep {
     above: String,
     /// SVG of the step from the front.
     front: String,
-    /// Who has done it, and when; null while nobody has.
+    /// Who has done the step, and when; null while it is not done.
     done: Option<StepDone>,
 }
 

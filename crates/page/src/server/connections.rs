@@ -1,9 +1,9 @@
 //! Open connections, limited in number, so that many idle ones leave room for a screen that gives an order.
 //!
-//! - Connections from this computer and from others have places of their own.
+//! - Connections from this computer and from other computers have places of their own.
 //! - The rank of a connection is what it has sent: no whole request, a request, a request of a valid session.
-//! - When all places are taken, a new connection takes the place of the oldest with the lowest rank. Sessions keep
-//!   theirs: while they hold all places, new connections end at once.
+//! - When all places are taken, a new connection takes the place of the oldest with the lowest rank. Connections of
+//!   sessions keep their places: while they hold all places, a new connection ends at once.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
@@ -73,7 +73,7 @@ impl Place {
         found.map_or(Rank::Silent, |(rank, _)| *rank)
     }
 
-    /// Raises the rank; a lower one changes nothing.
+    /// Raises the rank; a rank that is not higher changes nothing.
     pub fn rise(&self, to: Rank) {
         if let Some((rank, _)) = locked(&self.places).taken.get_mut(&self.number) {
             *rank = to.max(*rank);
@@ -121,7 +121,7 @@ impl Places {
     }
 }
 
-/// Locks the places even after another holder panicked, because no panic leaves them half changed.
+/// Locks the places even after another holder panicked, because no panic leaves the places half changed.
 fn locked(places: &Mutex<Places>) -> MutexGuard<'_, Places> {
     places.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -138,7 +138,7 @@ mod tests {
         locked(&place.places).taken.contains_key(&place.number)
     }
 
-    /// Takes all places of other computers, with these ranks for the first ones.
+    /// Takes all places for other computers; the first connections get these ranks.
     fn full(connections: &Connections, ranks: &[Rank]) -> Vec<Place> {
         let taken: Vec<Place> = (0..ELSEWHERE)
             .map(|_| connections.take(OTHER).unwrap().0)

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Reason why the page cannot listen at an address.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
-    /// Other computers can reach the address, and there is no certificate: passwords would pass in the clear.
+    /// Other computers can reach the address, but there is no certificate, so passwords would travel unencrypted.
     #[error(
         "--listen {0}: found an address that other computers reach, expected --tls-cert and --tls-key with it, or \
          127.0.0.1 behind a proxy"
@@ -21,7 +21,7 @@ pub enum ListenError {
          Debian package is"
     )]
     NoTls,
-    /// A file of certificates or of the key cannot be read as PEM, or holds none.
+    /// The file of the certificate or of the key cannot be read as PEM, or holds no certificate or no key.
     #[cfg(feature = "tls")]
     #[error("{path}: expected {expected} as PEM: {source}")]
     Pem {
@@ -32,7 +32,7 @@ pub enum ListenError {
         /// Error of the reader.
         source: tokio_rustls::rustls::pki_types::pem::Error,
     },
-    /// The key is not that of the certificate, or its kind is unknown.
+    /// The key does not belong to the certificate, or the kind of key is unknown.
     #[cfg(feature = "tls")]
     #[error("{cert} and {key}: {source}")]
     Pair {
@@ -43,7 +43,7 @@ pub enum ListenError {
         /// Error of the TLS library.
         source: tokio_rustls::rustls::Error,
     },
-    /// The address is in use, or not one of this computer.
+    /// The address is in use, or does not belong to this computer.
     #[error("--listen {listen}: the page cannot listen there")]
     Bind {
         /// The address.
@@ -64,8 +64,8 @@ impl Listener {
     /// Listens at an address, over TLS when `tls` has a certificate.
     ///
     /// # Errors
-    /// Fails when other computers reach the address and there is no certificate, and when the address is in use or not
-    /// one of this computer.
+    /// Fails when other computers can reach the address but there is no certificate, and when the address is in use or
+    /// does not belong to this computer.
     pub fn open(listen: SocketAddr, tls: Option<Tls>) -> Result<Self, ListenError> {
         if tls.is_none() && !listen.ip().to_canonical().is_loopback() {
             return Err(ListenError::InTheClear(listen));

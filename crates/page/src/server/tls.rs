@@ -22,10 +22,10 @@ impl std::fmt::Debug for Tls {
 }
 
 impl Tls {
-    /// Reads the certificate, with those of its issuers after it, and its key; both are PEM.
+    /// Reads two PEM files: the certificate, followed by the certificates of its issuers, and the key.
     ///
     /// # Errors
-    /// Fails when a file is unreadable or holds something else, and when the key is not that of the certificate.
+    /// Fails when a file is unreadable or holds something else, and when the key does not belong to the certificate.
     pub fn load(cert: &Path, key: &Path) -> Result<Self, ListenError> {
         let unread = |path: &Path, expected| {
             let path = path.to_owned();
@@ -55,7 +55,7 @@ impl Tls {
         Ok(Self(TlsAcceptor::from(Arc::new(config))))
     }
 
-    /// Makes the handshake.
+    /// Performs the TLS handshake.
     pub(super) async fn accept(&self, stream: TcpStream) -> std::io::Result<TlsStream<TcpStream>> {
         self.0.accept(stream).await
     }

@@ -1,7 +1,7 @@
 //! Opens sessions for a right password, for the set-up code of the first engineer, and after a change of one's own
 //! password.
 //! The audit of orders notes every wrong password or code, with the typed name only if a person has it: people type
-//! passwords into the wrong field. An attempt that has to wait leaves no line, so that guessing cannot fill the disk.
+//! passwords into the wrong field. An attempt that must wait leaves no line, so that guessing cannot fill the disk.
 
 use super::super::access::{AccessError, Login, Person, Role, note};
 use super::super::error::{ApiError, blocking};
@@ -10,7 +10,7 @@ use history::Store;
 use machine::view::By;
 use serde_json::json;
 
-/// A session: its person and its token.
+/// A person and the token of the person's session.
 pub(crate) type Session = (Person, String);
 
 impl Sessions {
@@ -90,8 +90,8 @@ impl Sessions {
         .await
     }
 
-    /// Returns the value of a right password or code. Fails with `wrong` for a wrong password or code, which the audit
-    /// notes, and with 429 when the register refused to check.
+    /// Returns what the register gave for a right password or code. Notes a wrong one in the audit and fails with
+    /// `wrong`; fails with 429 when the register refused to check.
     async fn answered<T>(
         &self,
         answer: Login<T>,

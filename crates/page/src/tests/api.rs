@@ -32,7 +32,7 @@ async fn reading_is_open_to_all_or_to_a_role() {
     let askers = askers(&fixture);
     for route in api::routes() {
         let path = route.path;
-        // Its stream has no end.
+        // The event stream has no end.
         if route.method == Method::Post || path == "/api/events" {
             continue;
         }

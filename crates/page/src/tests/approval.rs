@@ -4,7 +4,7 @@ use super::*;
 use serde_json::{Value, json};
 
 impl Fixture {
-    /// Creates a server of a plant that wants a second engineer, with the engineers `zhao` and `chen`.
+    /// Creates a server of a plant that requires approval by a second engineer, with the engineers `zhao` and `chen`.
     fn of_two_engineers() -> Self {
         let fixture = Self::new();
         let rig = fixture.db.with_file_name("config").join("rig.toml");

@@ -23,8 +23,8 @@ static CLOSED: LazyLock<Value> = LazyLock::new(|| {
     document
 });
 
-/// Closes objects that name their members. The parts of an `allOf` see the members of the others, so only the `whole`
-/// is closed, and parts that refer to a named schema get an open copy of it.
+/// Closes objects that name their members. Each part of an `allOf` sees the members of the other parts, so only the
+/// whole is closed, and a part that refers to a named schema gets an open copy of that schema.
 fn close(schema: &mut Value, named: &Value, whole: bool) {
     match schema {
         Value::Object(members) => {

@@ -7,9 +7,9 @@ use ::history::{
 };
 use serde_json::{Map, Value, json};
 
-/// Routes that the test of successful answers leaves out: a stream without end; routes that end sessions or change
-/// people, which `people.rs` and `login.rs` call; those that need a second engineer, which `approval.rs` calls; and
-/// those that need a plan under way, which `plans.rs` calls.
+/// Routes that the test of successful answers leaves out: a stream without end, and routes that other tests call: to
+/// end sessions or change people (`login.rs`, `people.rs`), with a second engineer (`approval.rs`), and with a plan
+/// under way (`plans.rs`).
 const APART: [&str; 12] = [
     "/api/events",
     "/api/logout",
@@ -108,7 +108,7 @@ impl Reader<'_> {
         Value::Object(values.collect::<Map<_, _>>())
     }
 
-    /// Returns every call: with all members and with the required ones only, one for each kind of body.
+    /// Returns two calls of every route and kind of body: with the required members only, and with all members.
     fn calls(&self) -> Vec<Call> {
         let paths = self.0["paths"].as_object().unwrap().iter();
         let each = paths.flat_map(|(path, methods)| {
@@ -243,7 +243,7 @@ fn percent_encoded(value: &str) -> String {
     value.bytes().map(encoded).collect()
 }
 
-/// Completes the call with what no document knows: the password, or hash and a new value of the newest revision.
+/// Adds to the call what no document can know: the password, or the hash and a new value of the newest revision.
 async fn completed(fixture: &Fixture, mut call: Call) -> Call {
     if call.path == "/api/login" {
         call.body = Some(json!({"user": call.body.unwrap()["user"], "password": PASSWORD}));

@@ -6,7 +6,7 @@ use ::history::tooling::{PlanAction, PlanBody, PlanPicture, PlanStep, ToolingPla
 use ::history::{Archive, Filter, OrderChoice};
 use serde_json::{Value, json};
 
-/// Plans two steps, whatever is asked; element `stuck` is locked, scene `none.toml` is faulty.
+/// Answers every question with a plan of two steps, but element `stuck` is locked, and scene `none.toml` is faulty.
 #[derive(Debug)]
 pub(super) struct OneStep;
 

@@ -54,7 +54,7 @@ async fn half_open(address: SocketAddr, count: usize, header: &str) -> Vec<TcpSt
     let mut open = Vec::new();
     for _ in 0..count {
         let mut stream = TcpStream::connect(address).await.unwrap();
-        // The rig may have closed it for a later one.
+        // The server may have closed this connection for a later one.
         let _ = stream.write_all(header.as_bytes()).await;
         open.push(stream);
     }
@@ -100,7 +100,7 @@ async fn a_session_keeps_its_connection_under_a_flood() {
     until(&mut screen, "\"lot\":\"after\"").await;
 }
 
-/// Reads until `expected` has come.
+/// Reads from `stream` until `expected` has come.
 async fn until(stream: &mut TcpStream, expected: &str) {
     let mut seen = String::new();
     while !seen.contains(expected) {

@@ -11,7 +11,7 @@ fn both_languages_have_equal_ids_in_order() {
 fn both_languages_have_the_same_attributes_and_arguments() {
     for id in ids(Lang::En) {
         let english = attributes(Lang::En, id);
-        // Attribute `row` is the form of a message in rows and files, which is English in every language.
+        // Attribute `row` is the text of a message in rows and files, which are English in every language.
         let read = english.iter().filter(|it| **it != "row").copied();
         assert_eq!(
             read.clone().collect::<BTreeSet<_>>(),
@@ -20,7 +20,7 @@ fn both_languages_have_the_same_attributes_and_arguments() {
         );
         for attribute in read.map(Some).chain([None]) {
             let [en, zh] = Lang::ALL.map(|lang| arguments(lang, id, attribute));
-            // `said` is English: instead of it, the Chinese text has other arguments or none.
+            // Argument `said` is English: the Chinese text has other arguments in its place, or none.
             match en.as_ref().is_some_and(|en| en.contains("said")) {
                 true => assert!(zh.is_some_and(|zh| !zh.contains("said")), "{id}"),
                 false => assert_eq!(en, zh, "{id} {attribute:?}"),
@@ -112,8 +112,8 @@ fn chinese_texts_have_full_width_punctuation() {
     assert_eq!(broken, Vec::<String>::new());
 }
 
-/// Latin words that a Chinese text may have: units, symbols of statistics and metrology, names, keys, codes, columns of
-/// files.
+/// Latin words that a Chinese text may contain: units, symbols of statistics and metrology, names, keys, codes, columns
+/// of files.
 const LATIN: [&str; 49] = [
     "A",
     "B",

@@ -7,7 +7,7 @@ use super::super::facts::RealTimeShare;
 use super::super::verdict::tests::verdict;
 use super::*;
 
-/// A computer as it should be.
+/// Facts of a computer without a flaw.
 fn good() -> Facts {
     Facts {
         program: "/usr/local/bin/relayrig".into(),

@@ -1,9 +1,9 @@
-//! Limits the number of wrong passwords in a time.
+//! Limits the number of wrong passwords within five minutes.
 //!
 //! A name may fail five times within five minutes, all names together thirty times. Then the next attempt must wait
 //! until the oldest of these failures is five minutes old. A right password clears the failures of its name, and so
-//! does an engineer who unlocks the name. The file keeps the failures, so that a restart clears none. A failure that
-//! lies in the future, because the clock was set back, does not count.
+//! does an engineer who unlocks the name. The file keeps the failures, so that a restart clears none. A failure dated
+//! in the future, noted before somebody set the clock back, does not count.
 
 use super::{Register, digest};
 use crate::access::error::{Doing, Result};
@@ -19,7 +19,7 @@ const PER_NAME: i64 = 5;
 const IN_ALL: i64 = 30;
 
 impl Register {
-    /// Returns the time until `name` may try again; `None` when it may try now.
+    /// Returns the time for which a login as `name` must wait; `None` when it need not wait.
     pub(super) fn wait(&self, name: &str, now_us: i64) -> Result<Option<Duration>> {
         let own = self.binding(&digest(name), PER_NAME, now_us)?;
         let all = self.binding("%", IN_ALL, now_us)?;
@@ -27,14 +27,14 @@ impl Register {
         Ok(until_us.map(|it| Duration::from_micros(it.unsigned_abs())))
     }
 
-    /// Returns the instant until which `name` may not try because of [`PER_NAME`] failures; `None` when it may.
+    /// Returns the instant until which [`PER_NAME`] failures lock the login of `name`; `None` when nothing locks it.
     pub(super) fn locked_until_us(&self, name: &str, now_us: i64) -> Result<Option<i64>> {
         let binding = self.binding(&digest(name), PER_NAME, now_us)?;
         Ok(binding.map(|at_us| at_us + WINDOW_US))
     }
 
-    /// Returns the instant of the failure that is number `most` counted from the newest; `None` when fewer count.
-    /// `names` is the digest of a name, or `%` for all names.
+    /// Returns the instant of failure number `most`, counted from the newest; `None` when fewer failures count. `names`
+    /// is the digest of a name, or `%` for all names.
     fn binding(&self, names: &str, most: i64, now_us: i64) -> Result<Option<i64>> {
         let sql = "SELECT at_us FROM failure WHERE name_sha256 LIKE ?1 AND at_us > ?2 AND at_us <= ?3 \
                    ORDER BY at_us DESC LIMIT 1 OFFSET ?4";

@@ -6,11 +6,12 @@ use crate::access::{SESSION_S, SetupCode, password};
 use rusqlite::{OptionalExtension, params};
 use std::time::Duration;
 
-/// Hash that no password matches: a login checks it for an unknown name, and so takes as long as for a known one.
+/// Hash that no password matches: a login with an unknown name checks this hash, and so takes as long as with a known
+/// name.
 const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
                       zY2ZxH5hG1m3pV0Q3mCkGd5dTn0l2yq0hXo1m3u9m6E";
 
-/// Name under which wrong set-up codes count; no person can have it.
+/// Name under which wrong set-up codes count; no person can have this name.
 const SETUP: &str = "set-up code";
 
 /// Outcome of an attempt to log in, or to prove one's password.
@@ -23,12 +24,13 @@ pub enum Login<T = (Person, String)> {
         /// True when a person has this name; for the audit, not for the client.
         known: bool,
     },
-    /// The register checked no password, because too many were wrong before. Holds the time until the next attempt.
+    /// The register checked no password, because too many were wrong before. Holds the time until the next attempt may
+    /// come.
     Wait(Duration),
 }
 
 impl Register {
-    /// Checks a password: counts a wrong one, and clears the failures of the name after a right one.
+    /// Checks a password: counts a wrong password, and clears the failures of the name after a right one.
     pub fn prove(&mut self, name: &str, password: &str, now_us: i64) -> Result<Login<Person>> {
         if let Some(wait) = self.wait(name, now_us)? {
             return Ok(Login::Wait(wait));
@@ -56,7 +58,7 @@ impl Register {
         }
     }
 
-    /// Checks `typed` against the set-up code; counts a wrong one like a wrong password. Once there is an engineer,
+    /// Checks `typed` against the set-up code; counts a wrong code like a wrong password. Once there is an engineer,
     /// every code is wrong.
     pub fn prove_code(
         &mut self,
@@ -86,7 +88,7 @@ impl Register {
         })
     }
 
-    /// Opens a session of a person; returns its token.
+    /// Opens a session of a person; returns the token of the session.
     pub fn open_session(&mut self, name: &str, now_us: i64) -> Result<String> {
         const DOING: &str = "opening a session";
         let token = password::random_hex(32)?;
@@ -103,7 +105,7 @@ impl Register {
         Ok(token)
     }
 
-    /// Returns the person who holds the session `token`; `None` for an unknown or expired one.
+    /// Returns the person who holds the session `token`; `None` for an unknown or expired token.
     pub fn holder(&self, token: &str, now_us: i64) -> Result<Option<Person>> {
         let sql = "SELECT name, role FROM session JOIN person ON person = name
                    WHERE token_sha256 = ?1 AND until_us > ?2";

@@ -1,4 +1,4 @@
-// Moving actuators and tests of the last seconds, recorded from the first view on for the page of quality.
+// Records moving actuators and tests of the last seconds, from the first view on, for the page of quality.
 
 const SPAN_MS = 10000;
 let activity = [];

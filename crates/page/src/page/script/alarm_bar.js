@@ -1,4 +1,4 @@
-// The alarm bar of every page with the first two alarms, and the sound.
+// The alarm bar of every page, with the first two alarms and the sound.
 
 function showAlarmBar(alarms) {
   const shown = alarms.filter((it) => !it.shelved);

@@ -78,7 +78,7 @@ async function readPast() {
   showPast();
 }
 
-// Lists the most frequent alarms with their counts and the time for which they were active.
+// Lists the most frequent alarms, each with its count and the total time for which it was active.
 async function showRanked(since) {
   const ranked = await ask("api/history/alarm-counts" + query({since})).then((it) => it.json(), () => []);
   at("ranked").replaceChildren(...ranked.slice(0, 10).map((it) => {
@@ -91,10 +91,10 @@ async function showRanked(since) {
   }));
 }
 
-// Rows of older versions have an English text only; Chinese then shows the cause from the catalogue.
+// Rows of older versions have an English text only; the Chinese page then shows the cause from the catalogue.
 function pastText(it) {
   const text = make("span", (language === "zh" && (it.text_zh || it.cause_zh)) || it.text);
-  // Hovering shows the whole text in the language of the page, where a narrow column cuts it off.
+  // Hovering shows the whole text, because a narrow column cuts it off.
   text.title = text.textContent;
   return text;
 }

@@ -1,6 +1,6 @@
 // The page of all rigs, or of one: state, yield by shift, reasons, alarms, calibrations and reference parts.
 
-// Plant and name of the rig whose page this is; `null` on the page of all rigs.
+// Plant and name of the rig on the page of one rig; `null` on the page of all rigs.
 const ownRig = (() => {
   const path = location.pathname.match(/^\/rigs\/([^/]+)\/([^/]+)\/$/);
   return path && {site: decodeURIComponent(path[1]), rig: decodeURIComponent(path[2])};
@@ -8,12 +8,12 @@ const ownRig = (() => {
 const isOwn = (it) => !ownRig || (it.site === ownRig.site && it.rig === ownRig.rig);
 const rigName = (it) => it.site + " / " + it.rig;
 const rigPath = (it) => "/rigs/" + encodeURIComponent(it.site) + "/" + encodeURIComponent(it.rig) + "/";
-// Rows of reference parts that the page of all rigs shows; the page of a rig shows all.
+// Number of reference parts that the page of all rigs shows; the page of one rig shows all.
 const REFERENCES = 20;
-// The last answer.
+// The last answer of `/api/fleet`.
 let fleet = null;
 
-// A question over all rigs, or long ago, would read months.
+// Without this bound a question over all rigs would read months.
 bounds.hours = 24;
 bounds.lot_days = 7;
 
@@ -34,7 +34,7 @@ function marked(text, kind) {
   return cell;
 }
 
-// Returns the shift under way, or the last one with parts.
+// Returns the last shift with parts that has begun.
 const lastShift = (day) => day?.shifts.findLast((it) => it.from <= fleet.day.at && it.parts > 0);
 
 function shiftText(shift) {
@@ -92,7 +92,7 @@ function showReferences() {
   }) : [row(word("rigs-no_references"))]));
 }
 
-// Shows what the page of one rig has besides its row.
+// Shows what only the page of one rig has, below the row of the rig.
 function showOwn(rig, day) {
   const or = (rows) => (rows.length ? rows : [row(NONE)]);
   at("rig_alarms").replaceChildren(...or(rig.alarms.map((it) =>

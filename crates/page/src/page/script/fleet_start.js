@@ -1,4 +1,4 @@
-// Reads the state of the rigs again and again, shows whether it is fresh, and starts the page.
+// Reads the state of the rigs again and again, shows whether the answer is fresh, and starts the page.
 
 const EVERY_MS = 5000;
 // Age of the last answer at which the page counts as old, ms.
@@ -15,7 +15,7 @@ async function readFleet() {
 
 const showLost = () => performance.now() - answered > OLD_MS;
 
-// Shows the state of the link; the page is grey unless it is fresh.
+// Shows the state of the link; the page is grey unless the answer is fresh.
 function showLink() {
   const state = showLost() ? "lost" : fleet.trouble ? "no_database" : fleet.now ? "fresh" : "waiting";
   document.body.classList.toggle("stale", state === "lost" || state === "no_database");
@@ -41,7 +41,7 @@ function translateMore() {
   at("of_rig").textContent = ownRig ? rigName(ownRig) : word("rigs-all");
   document.title = (ownRig ? rigName(ownRig) + " \u00b7 " : "") + "relayrig";
   at("all_rigs").hidden = !ownRig;
-  // Control charts are those of one rig.
+  // Only the page of one rig has control charts.
   at("of_quality").hidden = !ownRig;
 }
 

@@ -1,4 +1,4 @@
-// The frame around all pages: menu, language, brightness, and which page is open.
+// The frame around all pages: menu, language, light or dark, and the open page.
 
 // The page that opens without a name in the address.
 const HOME = document.querySelector("main").dataset.page;

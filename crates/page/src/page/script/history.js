@@ -67,7 +67,7 @@ at("h_filter").addEventListener("submit", (event) => {
 at("h_back").addEventListener("click", () => { offset = Math.max(0, offset - PAGE); readParts(); });
 at("h_next").addEventListener("click", () => { offset += PAGE; readParts(); });
 
-// Takes the filter of the address, if it has one, in place of the bound of the page.
+// Takes the filter from the address, if present, in place of the bound of the page.
 function takeFilter() {
   const given = Object.fromEntries(new URLSearchParams(location.hash.split("?")[1]));
   const named = FIELDS.filter((field) => Object.hasOwn(given, field));
@@ -143,7 +143,7 @@ function showPart(part) {
       sample.command, sample.raw, clock(sample.at).slice(11) + sample.at.slice(19, -1)))));
 }
 
-// Draws the batch in which the part was judged, with the switchings of its own contact; hides the drawing without one.
+// Draws the batch of a part with the switchings of the part's own contact; hides the drawing of a part without a batch.
 async function readBatch(part, isNewest) {
   const batches = await (await ask("api/history/batches" + query({lot: part.lot, run: part.run}))).json();
   if (!isNewest()) return;

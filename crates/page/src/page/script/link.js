@@ -1,4 +1,4 @@
-// The link to the rig: receives views and beats, and marks the page as stale without them.
+// The link to the rig: receives views and beats, and marks the page as stale when none come.
 
 // Silence after which the link counts as lost, ms: a beat comes each second, and one may be missing.
 const STALE_MS = 2200;

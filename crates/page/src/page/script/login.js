@@ -10,7 +10,7 @@ function showWho() {
   showView();
 }
 
-// Sends `session` to a route that opens a session; shows a refusal at `answer`; returns whether the session is open.
+// Sends `session` to a route that opens a session; shows a refusal at `answer`. Returns true when the session is open.
 async function openSession(path, session, answer) {
   answer.textContent = "";
   try {

@@ -34,8 +34,8 @@ function valueRow(key, last) {
   return row;
 }
 
-// Draws a value in the band of its limits. Without a lower limit the band begins at 0 or at a value below 0, without an
-// upper limit it ends at 1.5 times the greatest number.
+// Draws a value in the band of its limits. Without a lower limit the band begins at 0 or at a value below 0; without an
+// upper limit the band ends at 1.5 times the greatest number.
 function bandCell(key, last) {
   const cell = make("td"), limits = view.limits[key], value = last ? last.values[key] : undefined;
   if (!limits) return cell;
@@ -86,7 +86,7 @@ function showVerdicts(verdicts) {
   }));
 }
 
-// Shows the field for a scanner that types as a keyboard, in a lot whose parts a person scans.
+// In a lot whose parts a person scans, shows the field for a scanner that types like a keyboard.
 function showScans() {
   const scans = view.machine ? view.machine.scans : null;
   at("scan").hidden = scans === null;

@@ -1,6 +1,6 @@
 // Orders to the rig, and their buttons.
 
-// Stop is last and apart, so that a finger does not hit another button.
+// Stop is last and apart, so that no finger hits it by mistake.
 const ORDERS = ["reset", "start", "hold", "unhold", "abort", "clear", "stop"];
 
 // Sends an order; returns `why`, the reason of a refusal or empty, and `said`, the words for an accepted order.
@@ -15,8 +15,7 @@ async function sendOrder(order) {
   }
 }
 
-// Sends an order if a person is logged in; passes the answer, or the refusal, to `show`; returns whether the rig took
-// it.
+// Sends an order if a person is logged in; passes the answer or refusal to `show`; returns true when the rig accepts.
 async function giveOrder(order, show) {
   const {why, said: outcome} = me === null ? {why: word("stop-login")} : await sendOrder(order);
   show(why || word("order-" + order.order) + colon() + outcome);
@@ -32,7 +31,7 @@ function whyNot(order, withWhat = "") {
   return language === "zh" ? found.why_zh : found.why_en;
 }
 
-// Makes a button of an order. While the rig would refuse the order it looks disabled, and a press shows the reason.
+// Makes the button of an order. While the rig would refuse the order, the button looks disabled and a press shows why.
 function orderButton(order, withWhat, body, name, answer) {
   const element = button("", async () => {
     const {title, textContent: label} = element;

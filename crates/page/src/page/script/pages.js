@@ -1,8 +1,8 @@
-// Pages besides the operator's: fetches the script of each when it first opens, and keeps it.
+// Pages besides the operator's: fetches the script of a page when the page first opens, and keeps the script.
 
 // Path of the script by name of the page; a changed script has another path.
 const SCRIPTS = JSON.parse(at("scripts").textContent);
-// Longest wait for a script before the page offers to try again; one that arrives later still counts.
+// Longest wait for a script, ms, before the page offers to try again; a script that arrives later still counts.
 const SCRIPT_MS = 10000;
 // State by path: "coming", "missing" or "here".
 const scripts = {};
@@ -31,7 +31,7 @@ function addPages(path, markup, begin) {
   if (!at("fetching").hidden) openPage();
 }
 
-// Fetches the script of the open page unless that is under way or has failed, and shows the progress.
+// Fetches the script of the open page, unless fetching is under way or has failed, and shows the progress.
 function showFetching() {
   const path = SCRIPTS[current];
   if (Object.hasOwn(PAGES, current)) return;

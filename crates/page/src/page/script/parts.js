@@ -8,7 +8,7 @@ const verdictCell = (verdict) => {
   return cell;
 };
 
-// Links to the page of a part; on the page of many rigs, to that of its rig.
+// Links to the page of a part; on the page of many rigs, to the page of the part's rig.
 function partLink(part) {
   const [site, ...rig] = (part.rig || "").split("/").map(encodeURIComponent);
   const link = make("a", part.lot + " / " + part.run + " / " + part.seq);
@@ -50,7 +50,7 @@ function timeBars(rows, label) {
   return svg;
 }
 
-// Returns the bar of the test, from probes up to verdict, and the bar of the way to the beam of the bin.
+// Returns two bars: the test, from probes up to the verdict, and the way to the beam of the bin.
 function partBars(part) {
   const judged = seconds(part.time), bars = [];
   if (part.test_s !== null) bars.push({from: judged - part.test_s, to: judged, name: word("h-test_s")});

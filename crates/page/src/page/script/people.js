@@ -31,7 +31,7 @@ async function changePerson(change) {
     answer.textContent = !reply.ok ? said(body, "reason")
       : body.password ? change.name + " " + word("people-logs_in") + " " + body.password
         : orderedText({order: "people", ...change, password: undefined}) + colon() + word("order-taken");
-    // The change may have been of one's own role.
+    // The change may concern the role of the logged-in person.
     await askWho();
     readPeople();
     return reply.ok;
@@ -83,7 +83,7 @@ at("p_form").addEventListener("submit", async (event) => {
   if (await changePerson({change: "add", name: at("p_name").value.trim(), role: at("p_role").value, password})) at("p_form").reset();
 });
 
-// Name and role of the person for whom the page last read the list; after another login it reads the list again.
+// Name and role of the person for whom the page last read the list; after another login the page reads the list again.
 let peopleFor = "";
 
 function showPeople() {

@@ -3,7 +3,7 @@
 let lotsSeen = [];
 
 async function enterQuality() {
-  // The cycle is that of a rig that the page follows.
+  // The page of many rigs follows no rig live, so it hides the cycle.
   for (const it of [at("q_cycle"), at("q_cycle").previousElementSibling]) it.hidden = !Object.hasOwn(SCRIPTS, "io");
   fillSelect(at("q_param"), keyOptions());
   try {
@@ -24,7 +24,7 @@ async function figures(path, which) {
   return Array.from(page.querySelectorAll(which), (it) => {
     const figure = document.importNode(it, true);
     const caption = figure.querySelector("figcaption");
-    // A narrow screen scrolls a chart sideways; the keyboard does so too.
+    // A narrow screen scrolls a chart sideways, also by keyboard.
     figure.tabIndex = 0;
     if (caption) figure.querySelector("svg").setAttribute("aria-label", caption.textContent);
     else figure.className = "list";
@@ -108,7 +108,7 @@ at("q_param").addEventListener("change", readQuality);
 
 const LAST_PARTS = 12;
 
-// Returns a drawing of how the last parts of a lot overlap: one is tested while the one before it travels to its bin.
+// Returns a drawing of how the last parts of a lot overlap: a part is under test while the part before goes to its bin.
 async function storedCycles(lot) {
   const {parts: count} = await (await ask("api/history/count" + query({lot}))).json();
   const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};

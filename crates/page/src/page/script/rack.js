@@ -1,6 +1,6 @@
 // The rack of a rig that tests batches: plan of the sockets, and the air with the switchings of each socket.
 
-// Drawing of the air, pixels: size before the page has given it one, room for the numbers beside it, least distance of numbers.
+// Drawing of the air, pixels: size before layout, room for the numbers beside it, least distance between numbers.
 const AIR = {wide: 640, high: 230, left: 48, below: 24, above: 8, apartX: 64, apartY: 18};
 
 function showRack() {
@@ -14,7 +14,7 @@ function showRack() {
   rack.sockets.forEach((socket, place) => showSocket(plan.children[place] ?? plan.appendChild(make("li")), socket, rack.test));
 }
 
-// Returns the state of a socket: its verdict once its part has a list, else its contact.
+// Returns the state of a socket: the verdict once the part is judged, else the state of the contact.
 function socketState({number, closed}) {
   const part = view.machine.places["socket_" + number];
   if (part?.bin) return part.bin === "pass" ? "pass" : part.bin === "retest" ? "void" : "fail";
@@ -48,7 +48,7 @@ function switchedTexts(number, test) {
   });
 }
 
-// Returns the temperature of the air at a time of the curve, C; null outside of it.
+// Returns the temperature of the air at a time of the curve, C; null outside the curve.
 function airAt({t_s: times, reference_c: air}, t) {
   const after = times.findIndex((it) => it >= t);
   if (after < 0) return air.at(-1) ?? null;

@@ -4,7 +4,7 @@
 const RECIPE_SECTIONS = ["about", "part", "decision", "limits", "test", "strategy", "prompt"];
 let recipe = null, revisions = [], drawnRecipe = "";
 // `typed`: texts typed into the newest revision, by path of the key. `refusedField`: the last refusal of a value.
-// `recipeMessage` returns the last message in the present language.
+// `recipeMessage` returns the last message in the language of the page.
 const typed = new Map();
 const NO_MESSAGE = () => ["", false];
 let refusedField = null, recipeMessage = NO_MESSAGE;
@@ -16,7 +16,7 @@ const rangeText = (it) => (it.low === undefined ? "" : (it.low_allowed ? it.low 
 // Returns a value as the text of its input field; for a list, one text per number.
 const asTyped = (value) => (Array.isArray(value) ? value.map(String) : value === null ? "" : String(value));
 
-// Converts typed text to the value for the rig. Sends text that is no number as it is; the rig refuses it with the key.
+// Converts typed text to a value for the rig. Text that is no number stays text; the rig then refuses it with the key.
 function asValue(field, text) {
   if (Array.isArray(text)) return text.map((it) => asValue({form: "number"}, it));
   if (text === "" && field.optional) return null;
@@ -121,7 +121,7 @@ function limitRow(key, [low, high]) {
   return withRefusal(row(nameOf(key), fieldCell(low), fieldCell(high), unitCell(low)), "limits." + key);
 }
 
-// Makes the table of the prompts of every lot, which are in another file than the recipe.
+// Makes the table of the prompts of every lot, which come from lot.toml, not from the recipe.
 function lotPrompts() {
   const table = make("table", undefined, "list sheet"), body = make("tbody");
   table.append(make("caption", word("r-prompts_of_lots") + bracketed("lot.toml")), body);

@@ -1,7 +1,7 @@
-// Judges a lot by another recipe and shows the changes.
+// Shows which verdicts of a lot would change under another recipe.
 
 let judgedAgain = null;
-// Name of the last recipe of each lot.
+// Name of the last recipe of each lot, by lot.
 let judgedBy = new Map();
 
 async function enterRejudge() {

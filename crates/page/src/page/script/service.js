@@ -33,7 +33,7 @@ function showBus() {
 // Shows what the system grants the program, and a histogram of how late this computer wakes the cycle.
 function showHost() {
   const {fifo_priority: priority, memory_locked: locked, refused, lateness} = view.host;
-  // What the system says about a refusal is English.
+  // The reason that the system gives for a refusal is English.
   const missing = language === "zh" ? [priority === null ? word("host-no_priority") : "", locked ? "" : word("host-not_locked")]
     : refused.map((it) => word("host-refused") + " " + it);
   const rights = [priority === null ? "" : "SCHED_FIFO " + priority, locked ? word("host-locked") : "",
@@ -44,7 +44,7 @@ function showHost() {
   at("host").textContent = [...rights, ...figures].join(" · ");
   at("lateness").replaceChildren(...lateness.buckets.filter((it) => it.count).map((it) => {
     const bar = make("meter");
-    // A logarithmic scale, because the few late waits are the ones that matter.
+    // A logarithmic scale, because the few late waits matter most.
     bar.max = Math.log10(1 + lateness.waits);
     bar.value = Math.log10(1 + it.count);
     const element = row(it.up_to_ms.toFixed(3), integerText(it.count), shareText(it.count, lateness.waits));
@@ -53,11 +53,11 @@ function showHost() {
   }));
 }
 
-// Shows what each database of the fleet lacks; a rig without one shows no table.
+// Shows what each database of the fleet lacks; a rig without a database shows no table.
 function showFleet() {
   at("fleet_shown").hidden = !view.fleet.length;
   at("fleet").replaceChildren(...view.fleet.map((it) => {
-    // What a database says is English.
+    // The error that a database reports is English.
     const element = row(it.url, integerText(it.lag_parts), integerText(Math.round(it.lag_s)), integerText(it.sent_parts), it.last_error ?? NONE);
     if (it.late || it.last_error) element.className = "bad";
     return element;
@@ -89,8 +89,8 @@ function makeJogs() {
   }));
 }
 
-// Shows in advance the guard's decision on a jog; for a refused jog, the two bodies that would collide, with the
-// details as title.
+// Shows in advance how the guard decides on a jog; for a refused jog, the two bodies that would collide, with details as
+// tooltip.
 function showClearance(item, jog) {
   const text = !jog ? "" : jog.refused ? bodiesText(jog.refused)
     : word("io-clearance") + " " + (jog.clearance_mm === null ? word("io-far") : jog.clearance_mm.toFixed(2) + " mm");
@@ -127,7 +127,7 @@ function showIo() {
     row(word("io-probe_contact"), contact === null ? NONE : contact.toFixed(2) + "\u202fΩ"));
 }
 
-// The link to plans for tooling says how far the plan under way is.
+// Shows at the link to plans for tooling how far the plan under way is.
 async function showTooling() {
   at("to_tooling").textContent = word("page-tooling");
   const reply = await fetch("/api/plans/list?limit=1").catch(() => null);

@@ -18,7 +18,7 @@ let theme = options.get("theme") || stored.get("theme") ||
 if (language !== "zh") language = "en";
 let view = null;
 let me = null;
-// Bounds of the questions of a page: hours of history that it shows at first, days of lots that it lists; `null` for no bound.
+// Bounds of a page: hours of history that the page shows at first, days of lots that it lists; `null` for no bound.
 const bounds = {hours: null, lot_days: null};
 // Functions of the pages by name: `enter` runs when the page opens or the language changes, `show` at every view.
 const PAGES = {};
@@ -31,7 +31,7 @@ const colon = () => (language === "zh" ? "\uff1a" : ": ");
 const semicolon = () => (language === "zh" ? "\uff1b" : "; ");
 const comma = () => (language === "zh" ? "\uff0c" : ", ");
 const bracketed = (text) => (language === "zh" ? "\uff08" + text + "\uff09" : " (" + text + ")");
-// Returns the Chinese or the English member of an answer; rows of older versions may have the English one only.
+// Returns the Chinese or the English member of an answer; rows of older versions may have only the English member.
 const said = (answer, key) => (language === "zh" && answer[key + "_zh"]) || answer[key];
 const unitText = (unit) => UNITS[unit] ?? unit ?? "";
 
@@ -111,7 +111,7 @@ const rfc3339 = (text) => (text ? new Date(text).toISOString() : "");
 
 const integerText = (value) => (Number.isFinite(value) ? value.toLocaleString("en").replaceAll(",", "\u202f") : NONE);
 
-// Formats a value and its uncertainty: two significant digits of the uncertainty, the value to the same place.
+// Formats a value and its uncertainty: the uncertainty to two significant digits, the value to the same decimal.
 function measured(value, uncertainty) {
   if (!Number.isFinite(value)) return [NONE, NONE];
   if (!(uncertainty > 0)) return [String(Number(value.toPrecision(6))), NONE];
@@ -139,7 +139,7 @@ async function ask(path) {
 
 const calls = new Map();
 
-// Counts a call of `reader`; returns a check that it is still the newest one, whose answer alone may be shown.
+// Counts a call of `reader`; returns a check that no later call has begun: only the newest call may show its answer.
 function newest(reader) {
   const call = (calls.get(reader) ?? 0) + 1;
   calls.set(reader, call);

@@ -2,12 +2,12 @@
 
 const PLAN_KINDS = ["changeover", "disassembly"];
 const SIDES = {"+x": "right", "-x": "left", "+y": "rear", "-y": "front", "+z": "top", "-z": "bottom"};
-// Time between two reads of the plans: another screen may tick off a step.
+// Time between two reads of the plans, ms, because another screen may tick off a step.
 const PLANS_MS = 3000;
 let scenes = [];
-// The plan on the page: one that was started, or a preview, which has no number.
+// The plan on the page: a started plan, or a preview, which has no number.
 let shownPlan = null;
-// Number of a plan that a person chose from the list; the plan under way is shown without a choice.
+// Number of the plan that a person chose from the list; without a choice the page shows the plan under way.
 let chosenPlan = null;
 let drawnPlan = "";
 
@@ -103,7 +103,7 @@ for (const id of ["t_kind", "t_from"]) at(id).addEventListener("change", showQue
 
 const isUnderWay = () => shownPlan !== null && shownPlan.plan !== null && shownPlan.end === null;
 
-// Adds a drawing of the server to the page; it holds shapes and classes alone.
+// Adds a drawing of the server to the page; the drawing holds only shapes and classes.
 function drawing(text, label) {
   const svg = document.importNode(new DOMParser().parseFromString(text, "image/svg+xml").documentElement, true);
   if (label) svg.setAttribute("aria-label", label);

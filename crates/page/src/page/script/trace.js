@@ -2,7 +2,7 @@
 
 let frozen = false;
 
-// Returns the signals that a reply reads or confirms: the names of those that are present.
+// Returns as text the names of the signals that are on according to a reply.
 function signalsText(signals) {
   const present = Object.keys(signals).filter((name) => signals[name]);
   return present.length ? word("trace-present") + colon() + present.map((name) => wordOr("signal-" + name, name)).join(comma())
@@ -21,7 +21,7 @@ async function readTrace() {
     const only = at("trace_line").value;
     fillSelect(at("trace_line"), [["", word("any")], ...lines.map((it) => [it.line, lineText(it.line)])]);
     const rows = lines.filter((it) => !only || it.line === only).flatMap((it) => it.entries.map((entry) => [it.line, entry]));
-    // Newest first, and of messages at one instant the later one.
+    // Newest first, also among messages of one instant.
     rows.reverse().sort((a, b) => b[1].at_us - a[1].at_us);
     at("trace").replaceChildren(...rows.slice(0, 200).map(([line, it]) =>
       row((it.at_us / 1e6).toFixed(6), lineText(line), it.way, it.text, meaningText(it))));
