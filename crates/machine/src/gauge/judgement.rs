@@ -75,9 +75,9 @@ impl fmt::Display for Side {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
-    /// Inside the limit; under the rule this is certain.
+    /// Inside the limit; under `guard_band` by at least U.
     Pass,
-    /// Outside the limit; under the rule this is certain.
+    /// Outside the limit; under `guard_band` by at least U.
     Fail(Side),
     /// Within U of the limit, on the side given: confirmation measurements must decide.
     Conditional(Side),

@@ -39,7 +39,7 @@ struct Underway {
 }
 
 impl Underway {
-    /// Reads the sensors of the end where the motion began; a motion between other places has none.
+    /// Reads the sensors of the end where the motion began; a motion that begins elsewhere has no such sensors.
     fn look_back(&mut self, now: RigTime, image: &Image) {
         let mut sensors = self.movement.other_end().iter();
         let is_off = |point: &DigitalIn| {

@@ -15,7 +15,7 @@
 //!
 //! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists the alarm until
 //! its cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part that was
-//! inside is void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
+//! inside is void, "interrupted". A stale sensor raises an alarm; the station never guesses what it would show.
 //!
 //! A run ends with its lot, or when a person leaves the lot for another one. An unattended run ([`Plan::attended`] is
 //! false) also ends with an alarm that needs a person. The station resets the machine and starts its lot by itself;

@@ -54,9 +54,9 @@ const SCANNED: [AnalogIn; 6] = [
 const SCANS: usize = 12;
 /// Number of scans along the fine ramp.
 const RAMP_SCANS: usize = 56;
-/// Time from one of these scans to the next, as a share of a round of conversions, however long the replies take. A
-/// reading is up to one round old; at this share the ages spread evenly over the ramp and do not tilt it, while scans
-/// at the pace of the rounds would drift through them.
+/// Time between two scans along the fine ramp, as a share of a round of conversions, however long the replies take. A
+/// reading is up to one round old. At this share the ages spread evenly over the ramp and do not bias its slope; in
+/// scans at the pace of the rounds the age would drift along the ramp.
 const RAMP_ROUND: f64 = 0.72;
 /// Longest time until the sources have fallen to zero and the relays of the range have switched.
 const SWITCHES: Span = Span::ms(4000);

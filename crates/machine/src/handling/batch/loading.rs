@@ -10,7 +10,7 @@ use units::{RigTime, Span};
 
 /// Time for which the door must stay closed before the rack counts as loaded.
 const SETTLED: Span = Span::ms(3_000);
-/// Time after which a rack is in trouble when it was loaded without a screen and no contact is closed.
+/// Time without any closed contact after which a rack that was loaded without a screen is in trouble.
 const SILENT: Span = Span::ms(600_000);
 /// Name of the prompt.
 pub(super) const LOADED: &str = "batch_loaded";
@@ -28,7 +28,7 @@ pub struct Loading {
     prompt: Option<Prompt>,
     /// Sockets with a closed contact for which the prompt was made.
     asked: Vec<u16>,
-    /// Answer of the person: true when every expected socket holds a part, false when only those seen do.
+    /// Answer of the person: true when every expected socket holds a part, false when only those in `asked` do.
     answer: Option<bool>,
 }
 

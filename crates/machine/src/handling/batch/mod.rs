@@ -1,4 +1,4 @@
-//! The batch: a person fills the sockets of a rack, all parts are tested together, the person unloads them by lists.
+//! The batch: a person fills the sockets of a rack, all parts are tested together, the person unloads one list per bin.
 //!
 //! ```text
 //! loading -> locking -> testing -> cooling -> unloading -> loading
@@ -322,7 +322,7 @@ impl Batch {
         }
     }
 
-    /// Performs a turn of homing; returns true when the rack is cool and the parts of an interrupted batch have left it.
+    /// Performs a turn of homing; returns true when the rack is cool and holds no part of an interrupted batch.
     pub fn home(&mut self, turn: &mut BatchTurn) -> bool {
         turn.begins = false;
         self.step(turn);

@@ -1,7 +1,7 @@
 //! Watches the temperature of the rack while no test runs, and carries out the acts that cool it.
 //!
-//! A rack that may be hot becomes cool by its own thermometer and one in the air around it; from then on its own decides,
-//! because walls warm the still air of an open door.
+//! A rack that may be hot becomes cool when its own thermometer and one in the air around it say so. From then on its
+//! own thermometer alone decides, because walls warm the still air of an open door.
 
 use super::BatchTurn;
 use crate::handling::trouble::Trouble;
@@ -164,8 +164,8 @@ impl RackWatch {
         }
     }
 
-    /// Returns true when a thermometer in the air has a fresh reading and none is at or above the limit, or when the rig
-    /// has none.
+    /// Returns true when a thermometer in the air has a fresh reading and none reads the limit or more, or when the rig
+    /// has no thermometer there.
     fn is_air_cool(&self, turn: &BatchTurn) -> bool {
         let all = turn.device.air_thermometers();
         let readings = all.iter().filter_map(|it| reading(turn, *it));

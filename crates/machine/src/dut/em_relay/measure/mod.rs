@@ -23,7 +23,7 @@
 //!
 //! A stage that finds an open coil or a contact that does not move records the finding, and the test goes straight to
 //! `off`. Confirmation measurements repeat results inside the guard band: the same stage `slow_repeats` times,
-//! averaged. A result that is still conditional then fails.
+//! averaged. A mean that is still inside it fails.
 
 mod board;
 mod coil;
@@ -101,7 +101,7 @@ pub struct Test {
     began: RigTime,
     /// Tests of this part so far, including this one.
     number: u8,
-    /// Selected supply range and the one that was read back, once they differ.
+    /// Selected supply range and the one that was read back; `None` while the two agree.
     range_mismatch: Option<RangeMismatch>,
 }
 

@@ -1,4 +1,4 @@
-//! Searches for a threshold by levels: steps, bisection, one pulse. They use no ramp, counter or overshoot.
+//! Searches for a threshold by levels (steps, bisection, one pulse), without ramp, counter or overshoot.
 //!
 //! A trial is a list of acts that ends with a reading of the contacts, and a conclusion: the threshold or the next
 //! level. The threshold lies between `untouched` and `changed`.
