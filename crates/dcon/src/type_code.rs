@@ -1,4 +1,4 @@
-//! Type codes (TT): each stands for a measuring or output range and its scale.
+//! Type codes (TT): each means a measuring or output range and its scale.
 
 use std::fmt;
 
@@ -35,7 +35,7 @@ impl fmt::Display for Unit {
 pub struct FullScale {
     /// Lower end.
     pub low: f64,
-    /// Upper end; 100 % and 7FFF stand for it.
+    /// Upper end: the value of 100 % and of 7FFF.
     pub high: f64,
     /// Unit of both ends.
     pub unit: Unit,

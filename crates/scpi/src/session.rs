@@ -202,8 +202,8 @@ impl Session {
         self.begin(program, true)
     }
 
-    /// Begins a program that makes the instrument safe. After doubt it leaves out the set-up, which may be what fails, and
-    /// connects at once, however often the link has failed before.
+    /// Begins a program that makes the instrument safe. After doubt it leaves out the set-up, which may be what fails,
+    /// and connects at once, however often the link has failed before.
     pub fn start_safe(&mut self, program: Program) -> Move {
         self.backoff = Span(0);
         self.begin(program, false)

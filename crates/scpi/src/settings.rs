@@ -51,8 +51,8 @@ impl fmt::Display for ExpectedIdentity {
     }
 }
 
-/// Settings of a link. The set-up must contain every setting of the instrument that matters, because the link keeps no
-/// other.
+/// Settings of a link. The set-up must contain every setting of the instrument that matters, because a
+/// resynchronisation restores no other.
 #[derive(Debug, Clone)]
 pub struct LinkSettings {
     /// Instruments that the link accepts; `None` for any.

@@ -19,7 +19,7 @@ const ENDS_K_PER_S: f64 = -0.3 / 60.0;
 /// Longest cooling, s.
 const LONGEST_S: usize = 5_400;
 
-/// Returns true when readings of a rest, one a second, are those of a cold chamber; `drift` is the slope at their end, K/s.
+/// Returns true when these readings of a rest, one a second, are of a cold chamber; `drift`: slope at their end, K/s.
 pub fn is_cold(rest_c: &[f64], drift: f64) -> bool {
     let rise_k = rest_c
         .last()
@@ -45,8 +45,8 @@ pub struct Cooled {
 }
 
 impl Cooled {
-    /// Returns the temperature around the chamber, C: the one that balances fan, losses and vent; `None` for a chamber that
-    /// loses no heat.
+    /// Returns the temperature around the chamber, C: the one that balances fan, losses and vent; `None` for a chamber
+    /// that loses no heat.
     pub fn ambient_c(&self, chamber: &Identified) -> Option<f64> {
         let heated = chamber.fan - self.slope_k_per_s / chamber.slope_k_per_s;
         let removed_per_k = chamber.loss_per_k + chamber.vent_per_k;
