@@ -136,7 +136,7 @@ pub struct ContactMove {
     pub t_us: u64,
     /// Name of the output that drives the coil.
     pub contactor: &'static str,
-    /// True when they have closed, false when they have opened.
+    /// True when the main contacts have closed, false when they have opened.
     pub closed: bool,
 }
 

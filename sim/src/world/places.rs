@@ -47,7 +47,7 @@ impl Places {
         self.done.clear();
     }
 
-    /// Returns the truth of every lot part that has entered the nest and is not forgotten, in that order.
+    /// Returns the truth of every lot part that has entered the nest and is not forgotten, in order of entry.
     pub fn truth(&self) -> Vec<PartTruth> {
         let inside = [&self.nest, &self.carried].into_iter().flatten();
         let done = self.done.iter().map(|body| body.part.clone());
