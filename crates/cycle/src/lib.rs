@@ -153,7 +153,7 @@ pub struct Cycle {
     bus_alarms: Vec<Alarm>,
     profile: Profile,
     turned_at: RigTime,
-    /// True while the cycle writes only safe values, at the end of a run.
+    /// True in an abort and at the end of a run, when every write makes a module safe.
     making_safe: bool,
     pending_orders: Vec<OrderRequest>,
     /// Order of the jog under way, which the cycle answers when the motion ends.
@@ -285,8 +285,8 @@ impl Cycle {
         }
     }
 
-    /// Moves the answers that have arrived from the lines into the process image, raises an alarm for each module that
-    /// has restarted, and collects the readings of the code reader.
+    /// Takes the answers of lines, instruments and converter, raises an alarm for each module that has restarted, and
+    /// collects the readings of the code reader.
     fn scan(&mut self, now: RigTime) {
         assert!(now >= self.turned_at, "rig time ran backwards");
         self.turned_at = now;

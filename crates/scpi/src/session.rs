@@ -197,7 +197,7 @@ impl Session {
         self.in_step = false;
     }
 
-    /// Begins a program. When the previous program was abandoned, a resynchronisation comes first.
+    /// Begins a program. After doubt, and when the previous program was abandoned, a resynchronisation comes first.
     pub fn start(&mut self, program: Program) -> Move {
         self.begin(program, true)
     }

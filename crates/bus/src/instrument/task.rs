@@ -1,5 +1,5 @@
-//! The task of an instrument: runs one program at a time; a later request ends the one under way. When nobody sends
-//! requests any more, it makes the instrument safe.
+//! The task of an instrument: runs one program at a time; a later request ends the one under way. Once a channel of the
+//! task closes, the task makes the instrument safe.
 
 use super::Link;
 use crate::{Pace, Timer};

@@ -39,7 +39,7 @@ struct Underway {
 }
 
 impl Underway {
-    /// Reads the sensors of the end where the motion began; a motion that begins elsewhere has no such sensors.
+    /// Reads the sensors of the end where the motion began; without any, the actuator never counts as having left it.
     fn look_back(&mut self, now: RigTime, image: &Image) {
         let mut sensors = self.movement.other_end().iter();
         let is_off = |point: &DigitalIn| {
@@ -153,7 +153,7 @@ impl Mechanism {
             .all(|(point, state)| image.input(*point, now, SENSOR_AGE) == Some(*state))
     }
 
-    /// Returns true when a motion of the same actuator has been driven and has not arrived.
+    /// Returns true when a motion of the same actuator is under way, waits to be driven, or is repeated.
     pub fn is_moving(&self, movement: Move) -> bool {
         let same = |other: &Move| other.key() == movement.key();
         self.underway

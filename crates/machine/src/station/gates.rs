@@ -35,7 +35,7 @@ const MIN_JUDGED: u64 = 20;
 pub struct LotSettings {
     /// Number of parts at the beginning of a run that get confirmation measurements.
     pub first_article_parts: u64,
-    /// Greatest share of failed parts, % of the size of the lot; without it the gate does not apply.
+    /// Greatest share of failed parts, % of the parts ordered, else of those judged; `None` for no limit.
     #[serde(rename = "discard_limit_pct")]
     pub reject_rate_limit_pct: Option<f64>,
     /// When the machine checks a reference part.

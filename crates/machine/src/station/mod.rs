@@ -134,7 +134,7 @@ struct LotControl {
     reference_left: VecDeque<String>,
     /// Number of reference parts that this run has planned so far.
     reference_planned: u64,
-    /// True once calibration and reference parts are complete.
+    /// True once calibration and reference parts are complete and the prompts before the first part are answered.
     began: bool,
 }
 

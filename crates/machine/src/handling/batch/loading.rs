@@ -10,7 +10,7 @@ use units::{RigTime, Span};
 
 /// Time for which the door must stay closed before the rack counts as loaded.
 const SETTLED: Span = Span::ms(3_000);
-/// Time without any closed contact after which a rack that was loaded without a screen is in trouble.
+/// Time from the closing of the door after which a rack loaded without a screen must show a closed contact.
 const SILENT: Span = Span::ms(600_000);
 /// Name of the prompt.
 pub(super) const LOADED: &str = "batch_loaded";
@@ -23,7 +23,8 @@ pub(super) const ALL: &str = "all";
 #[derive(Debug, Default)]
 pub struct Loading {
     closed_since: Option<RigTime>,
-    /// True once the door was open in this phase: a rack whose door has not been open is not loaded.
+    /// True once the door was open in this phase. Without this, a rack counts as loaded only at a screen, by a closed
+    /// contact.
     was_open: bool,
     prompt: Option<Prompt>,
     /// Sockets with a closed contact for which the prompt was made.

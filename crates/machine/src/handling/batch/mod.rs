@@ -272,7 +272,7 @@ impl Batch {
         }
     }
 
-    /// Returns true when no part is in the rack.
+    /// Returns true while a person loads the rack: no part in it has a number yet.
     pub fn is_empty(&self) -> bool {
         matches!(self.phase, Phase::Loading(_))
     }

@@ -27,9 +27,9 @@ enum Heat {
     Unknown,
     /// Homing began at this time and waits for the first reading.
     Awaited(RigTime),
-    /// The last reading was below the limit, and no heat was on since.
+    /// Cool at the last reading; see [`RackWatch::is_cool`].
     Cool,
-    /// The last usable reading was at the limit or above it.
+    /// Not cool at the last usable reading.
     Hot,
 }
 
@@ -176,7 +176,8 @@ impl RackWatch {
         all.is_empty() || !fresh.is_empty() && fresh.iter().all(|it| it.0 < self.unlock_below.0)
     }
 
-    /// Returns true when the last reading is fresh and below the limit.
+    /// Returns true when the last reading is fresh and below the limit, and the air is cool. While the rack is cool,
+    /// the limit is higher by [`HYSTERESIS_K`], and the air does not matter.
     pub fn is_cool(&mut self, turn: &BatchTurn) -> bool {
         let Some((Celsius(value), at)) = reading(turn, self.thermometer) else {
             return false;
