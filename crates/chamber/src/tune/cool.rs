@@ -55,7 +55,7 @@ impl Cooled {
 }
 
 impl Cooling {
-    /// Takes the reading of a second, C; returns the end once the chamber hardly falls.
+    /// Takes the reading of a second, C; returns the end of the cooling once the temperature hardly falls.
     pub fn step(&mut self, measured_c: f64) -> Option<Cooled> {
         self.readings_c.push(measured_c);
         let from = self.readings_c.len().checked_sub(SLOPE_S)?;

@@ -27,7 +27,7 @@ use dcon::Channel;
 use std::collections::BTreeMap;
 
 impl Wiring {
-    /// Resolves all names of a rig without instruments, checks the whole wiring and returns the first fault.
+    /// Resolves all names of a rig without instruments and checks the whole wiring; fails with the first fault.
     /// `fixtures`: points that the kinds of device declare; the rig may lack any of them.
     pub fn resolve(settings: &RigSettings, fixtures: &[Fixture]) -> Result<Self, Fault> {
         Self::resolve_with(settings, fixtures, &Profiles::new())

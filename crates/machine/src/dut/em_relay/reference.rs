@@ -3,7 +3,7 @@
 //! The calibration runs with an empty nest and the probes up (drive and source need the probe-up chain). It finds gain
 //! and offset of the coil converter's inputs, ohms per ratio on each current channel, milliohms per volt of drop, gate
 //! delays, gain and offset of the three supply outputs, and the slope of the fine ramp against the host's clock. The
-//! slope of the coarse ramp stays nominal, because this ramp only places the fine one.
+//! slope of the coarse ramp stays nominal, because the overshoot contains its error.
 
 mod check;
 mod fault;
@@ -62,7 +62,7 @@ const RAMP_ROUND: f64 = 0.72;
 const SWITCHES: Span = Span::ms(4000);
 /// Number of drops read per polarity.
 const DROPS: usize = 8;
-/// Number of gate pulses: their sum is uncertain by one count, their mean by 1/25 of a count.
+/// Number of gate pulses; the standard uncertainty of one count is at most half a count, that of their mean 1/10.
 const PULSES: u32 = 25;
 
 /// Returns the inputs that [`acts`] scans; empty on a rig that lacks a point of the relay test.
