@@ -6,7 +6,7 @@ use crate::truth::{BodyTruth, PartTruth, Place};
 /// Places of the line between magazine and bin.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
-    /// Part in the pocket, before the pusher.
+    /// Part in the pocket, in front of the pusher at rest.
     pub pocket: Option<Box<Part>>,
     /// Part in front of the moving pusher.
     pub pushed: Option<Box<Part>>,

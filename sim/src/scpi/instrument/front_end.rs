@@ -11,8 +11,8 @@ pub(super) const VERTICAL: f64 = 8.0;
 /// Number of codes of the converter.
 pub(super) const CODES: f64 = 4096.0;
 
-/// Limits of error: gain of a channel, and gain that one of its ranges adds, as fractions; as fractions of the range,
-/// offset and bend of the curve, and standard deviation of the noise.
+/// Limits of error. The gain of a channel, and what one of its ranges adds to it, are fractions; offset, bend of the
+/// curve and noise (standard deviation) are fractions of the range.
 const GAIN: f64 = 2e-2;
 const GAIN_OF_RANGE: f64 = 1e-3;
 const OFFSET: f64 = 1e-2;

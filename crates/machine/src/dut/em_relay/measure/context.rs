@@ -132,8 +132,8 @@ impl Context {
         Celsius(self.relay.part.reference_temperature_c)
     }
 
-    /// Returns the strategy for a threshold. Reference parts, and the first parts of a lot under `adaptive`, get both
-    /// ramps, because the overshoot model learns from them.
+    /// Returns the strategy for a threshold: `coarse_fine` in a thorough test, before the overshoot is known, and under
+    /// `adaptive` until enough parts of the lot have taught the overshoot model; else that of the recipe.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
         let overshoot = self.overshoot(match parameter == Parameter::ReleaseVoltage {
             true => Direction::Falling,
