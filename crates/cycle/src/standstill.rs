@@ -9,8 +9,8 @@ use units::Span;
 const SAFE_WITHIN: Span = Span::ms(2000);
 
 impl Cycle {
-    /// Compares every module with the wiring; restores the settings that an interrupted run left in a module; prepares
-    /// the instruments.
+    /// Compares every module with the wiring; restores the settings that an interrupted run has left changed in a
+    /// module; prepares the instruments.
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
         assert!(self.traffic.is_quiet(), "verified while a line is in use");

@@ -85,9 +85,9 @@ impl TypeCode {
         })
     }
 
-    /// Returns the range of a temperature sensor: thermocouples J K T E R S B N C L M L-DIN (codes 0E to 19), and Pt100
-    /// (20 to 23 with 0.00385/K, 24 to 27 with 0.003916/K; 2E and 80 of the 7015), and Pt1000 (2A). Other makers give
-    /// 20 to 24 other ranges: a code counts only together with the model name.
+    /// Returns the range of a temperature sensor: thermocouples J K T E R S B N C L M L-DIN (codes 0E to 19), Pt100 (20
+    /// to 23 with 0.00385/K, 24 to 27 with 0.003916/K; 2E and 80 of the 7015), and Pt1000 (2A). Other makers give 20 to
+    /// 24 other ranges: a code counts only together with the model name.
     fn temperature(self) -> Option<FullScale> {
         let (low, high) = match self.0 {
             0x0E => (-210.0, 760.0),

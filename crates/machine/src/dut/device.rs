@@ -99,8 +99,8 @@ pub trait DeviceUnderTest {
         panic!("a kind without experiments gets one: {what:?}")
     }
 
-    /// Returns the acts that cool the rack after a test and after any restart (`on`), or that end the cooling before
-    /// the door is unlocked. They also leave every source of heat off.
+    /// Returns the acts that cool the rack after a test and after any restart, or without `on` those that end the
+    /// cooling before the door is unlocked. Both leave every source of heat off.
     fn cooling(&self, _on: bool) -> Vec<Act> {
         Vec::new()
     }

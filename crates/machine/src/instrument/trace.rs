@@ -4,8 +4,8 @@
 //! the traced outputs of a kind, and words of inputs. A bit signal has one sample at each change and one at the last
 //! poll before it, so that polling for many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`]
 //! samples; a test of the default recipe has some 150. Of a waveform the trace keeps the least and the greatest value
-//! in each of [`WAVE_PIECES`] pieces, at most [`MAX_WAVE_SAMPLES`] in a test in addition to the other samples; its last
-//! sample gets the time at which the program ended.
+//! in each of [`WAVE_PIECES`] pieces, at most [`MAX_WAVE_SAMPLES`] in a test in addition to the other samples; their
+//! times count back from the end of the program.
 
 use super::query::{Delivered, Instrument, Query, Waveform};
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};

@@ -129,8 +129,8 @@ impl Loading {
 }
 
 /// Returns the sockets that a person should fill for this batch: those with a closed contact, then the first others
-/// until the lot lacks no part. Parts that show are all tested, even when the lot lacks fewer, so that nothing is
-/// heated without a row.
+/// until the lot lacks no part. Parts with a closed contact are all tested, even when the lot lacks fewer, so that
+/// nothing is heated without a row.
 fn expected(turn: &BatchTurn, rack: &Rack, seen: &[u16]) -> Vec<u16> {
     let lacking = turn.lacking.map_or(usize::MAX, |lacking| {
         usize::try_from(lacking).unwrap_or(usize::MAX)
