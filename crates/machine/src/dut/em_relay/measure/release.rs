@@ -26,7 +26,7 @@ pub const SEAL: f64 = 0.95;
 const LAST_REFRESHES: f64 = 1.5;
 /// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
-/// Time for the seal's flux to decay to a few per cent before a fine ramp. The model of the coarse overshoot includes
+/// Time for the seal's flux to decay to a few percent before a fine ramp. The model of the coarse overshoot includes
 /// the flux that remains after [`SETTLES`].
 const FINE_SETTLES: Span = Span::ms(35);
 /// Time after the end of a ramp up to which a break still counts.
