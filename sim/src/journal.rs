@@ -36,7 +36,7 @@ pub enum Entry {
         module: String,
         /// Channel.
         channel: u8,
-        /// True when the level is above.
+        /// True when the level is now above.
         on: bool,
     },
     /// A fault has struck the running rig.

@@ -11,8 +11,8 @@ use units::Span;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Echo {
-    /// A number in the standard event status enable register, which the instrument returns and loses when it is
-    /// switched off.
+    /// A number that the link writes to the standard event status enable register; the instrument returns it, and loses
+    /// it when switched off.
     #[default]
     Ese,
     /// The identity alone, for an instrument without that register. After doubt the link waits for a silence as long as
