@@ -1,6 +1,6 @@
-//! Journal of the outputs: every change of a digital output, analog output that goes on or off, expiry of a host
-//! watchdog, fault that strikes, overdriven coil, move of the main contacts of a contactor, and reply that this
-//! computer sends late.
+//! Journal of the outputs: changes of digital outputs, analog outputs that go on or off, expiries of host watchdogs,
+//! faults that strike, overdriven coils, moves of the main contacts of a contactor, and replies that this computer
+//! sends late.
 //!
 //! The journal records at the terminals, between modules and world, so that it holds the signals that the actuators
 //! get. It is off until [`JournaledWorld::listen`].

@@ -1,10 +1,10 @@
 //! Resolves the settings of `config/rig.toml` to a checked [`Wiring`].
 //!
 //! The resolution checks whatever involves more than one key. Every point is one of the machine, one that a kind of
-//! device declares, or the beam of a bin. It names an existing module, a channel of it, and terminals of the right
-//! kind. No two points share a terminal, and no two modules an address on one line. A module has exactly the settings
-//! of its model. The axis has one point for each place. The ranges of the supply have codes of their own. An instrument
-//! has a profile and a link of its own. The emergency stop acts in time.
+//! device declares, the beam of a bin, or the contact of a socket. It names an existing module, a channel of it, and
+//! terminals of the right kind. No two points share a terminal, and no two modules an address on one line. A module has
+//! exactly the settings of its model. The axis has one point for each place. The ranges of the supply have codes of
+//! their own. An instrument has a profile and a link of its own. The emergency stop acts in time.
 
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
