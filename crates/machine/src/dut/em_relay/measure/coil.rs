@@ -125,8 +125,8 @@ pub(super) fn acts_off(
     (acts, board)
 }
 
-/// Sets the supply to the start level of the next part (the pre-bias, with both ramps at 0) and reads the restart flag of
-/// every module with outputs.
+/// Sets the supply to the start level of the next part (the pre-bias, with both ramps at 0) and reads the restart flag
+/// of every module with outputs.
 pub(super) fn rest(context: &Context, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));
