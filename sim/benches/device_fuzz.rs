@@ -1,6 +1,7 @@
 //! 10^7 random inputs for the device codec: `cargo bench -p rigsim --bench device_fuzz [-- INPUTS [SEED] [--json]]`.
 //!
-//! A panic, or silence that changes a register, ends it. `--json` prints the counts as figures, a line of JSON each.
+//! Ends at a panic, or when an unanswered input changes a register. `--json` prints the counts as figures, a line of
+//! JSON each.
 
 #[path = "../tests/fuzz/garbage.rs"]
 mod garbage;

@@ -9,9 +9,9 @@
 //! | 08, 09 | I-7043 | module (4 bits), a number that the host writes (12 bits); number 0 at power-on and when safe |
 //! | 0A, 0B | I-7021P, hex | as I-7043 |
 //!
-//! The module number is the address less one, except at analog inputs. Time at an analog input rises and falls as
-//! a triangle, so that the mean over a converter window equals the time within that window. The line also records
-//! its output words, so that a test can check them.
+//! The module number is the address; at analog inputs, the address less one. Time at an analog input rises and falls as
+//! a triangle, so that the mean over a converter window equals the time within that window. The line also records its
+//! output words, so that a test can check them.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;

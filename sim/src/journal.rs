@@ -1,5 +1,6 @@
-//! Journal of the outputs: every change of a digital output, analog output that goes on or off, expiry of a host watchdog, fault that strikes, coil that
-//! is overdriven, move of the main contacts of a contactor, and reply that this computer made late.
+//! Journal of the outputs: changes of digital outputs, analog outputs that go on or off, expiries of host watchdogs,
+//! faults that strike, overdriven coils, moves of the main contacts of a contactor, and replies that this computer
+//! sends late.
 //!
 //! The journal records at the terminals, between modules and world, so that it holds the signals that the actuators
 //! get. It is off until [`JournaledWorld::listen`].
@@ -35,7 +36,7 @@ pub enum Entry {
         module: String,
         /// Channel.
         channel: u8,
-        /// True when the level is above.
+        /// True when the level is now above.
         on: bool,
     },
     /// A fault has struck the running rig.
@@ -90,7 +91,7 @@ pub(crate) struct JournaledWorld {
     late: LateReplies,
 }
 
-/// Replies that this computer made late, in real time.
+/// Replies that this computer sent late, in real time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LateReplies {
     /// Number of late replies.

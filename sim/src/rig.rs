@@ -97,7 +97,7 @@ impl Rig {
         self.instruments.as_mut()
     }
 
-    /// Starts to follow the wall clock: rig time is its present value now. Returns the instant of rig time 0.
+    /// Starts to follow the wall clock from the present rig time. Returns the instant of rig time 0.
     pub(crate) fn start_real_time(&mut self) -> Instant {
         let passed = Duration::from_micros(self.now_us);
         let origin = Instant::now().checked_sub(passed);
@@ -260,7 +260,7 @@ impl Rig {
         self.scene.record_late(name, t_us, late_us);
     }
 
-    /// Returns the replies that this computer made late, in real time.
+    /// Returns the replies that this computer sent late, in real time.
     pub fn late_replies(&self) -> LateReplies {
         self.scene.late()
     }

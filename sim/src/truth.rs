@@ -39,7 +39,7 @@ pub trait WorldRecord {
     /// Activates a fault of the world; `value` is the number of a part.
     ///
     /// # Errors
-    /// Fails when the fault is unknown, applies only to the start, or needs the number of a part.
+    /// Fails when the fault is unknown or applies only to the start, or the number of a part is missing or needless.
     fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         let _ = value;
         Err(SimError::UnknownFault { name: fault.into() })
@@ -136,7 +136,7 @@ pub struct ContactMove {
     pub t_us: u64,
     /// Name of the output that drives the coil.
     pub contactor: &'static str,
-    /// True when they have closed, false when they have opened.
+    /// True when the main contacts have closed, false when they have opened.
     pub closed: bool,
 }
 

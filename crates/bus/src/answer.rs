@@ -67,7 +67,8 @@ pub enum Failure {
     /// After a damaged reply from this address, the repeated reads disagree: two modules share the address, the line
     /// is disturbed, or the quantity changes faster than the line reads it.
     Contradicted,
-    /// Bytes without a request have kept arriving since earlier trouble, so the line did not send the command.
+    /// Bytes without a request kept arriving after earlier trouble: the line has only waited for silence, and sent
+    /// nothing.
     NeverSilent,
     /// The port was lost, or could not be opened.
     PortLost(PortError),

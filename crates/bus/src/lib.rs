@@ -40,7 +40,7 @@
 //!    the reply.
 //! 4. After a time-out or damage it resynchronises: it asks the module for its name, and the `!AA` reply proves that no
 //!    older reply is on its way. When the module does not answer, the line must fall silent for the longest reply time
-//!    plus the grace for late replies; for one second after that, every reply that an earlier request could have caused
+//!    plus the grace for late replies. For one second after that, every reply that an earlier request could have caused
 //!    needs a confirmation, because `>` replies carry no address and a late one looks like the next.
 //! 5. It reads at least twice from an address on probation, that is, one whose replies were damaged: a checksum misses
 //!    one error in 256.

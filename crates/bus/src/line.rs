@@ -101,8 +101,8 @@ impl Line {
         }
     }
 
-    /// Serves a request. Writes a setting only if the module does not already have this value, because EEPROMs wear, or
-    /// if the module refuses to report it.
+    /// Serves a request. Writes a setting only if the module has another value, because EEPROMs wear, or if the module
+    /// refuses to report it.
     async fn serve(&mut self, request: Request) -> Answer {
         let Some(setting) = request.command.setting() else {
             return self.carry_out(request).await;

@@ -7,7 +7,7 @@
 //!    order, so the reply, which carries the module's address, proves that nothing older is on its way. A request for
 //!    the name that gets no reply in time is outstanding too: its reply may arrive after a later request timed out, and
 //!    then proves nothing about that later request. So the line attributes a reply to the oldest request that it fits,
-//!    and prefers a request for the name that is not outstanding.
+//!    and asks by a command that is not outstanding, if possible.
 //! 2. If the module does not name itself, its reply stays outstanding for [`HORIZON`]. During that time the line
 //!    accepts a reply of the same form only when the module repeats this reply and then names itself, with no other
 //!    bytes in between. A write must not be repeated, so the line rejects the reply to a write.

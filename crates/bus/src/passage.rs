@@ -1,8 +1,8 @@
 //! How late this computer passes bytes on between a serial port and the program.
 //!
-//! The kernel hands the bytes of every terminal, serial or pseudo, to its reader in a worker thread of ordinary priority,
-//! which a busy computer delays however high the priority of the program is. The delay shows in no timer. So a byte goes
-//! through a pair of pseudo-terminals every 10 ms, and its delay counts.
+//! The kernel hands the bytes of every terminal, serial or pseudo, to its reader in a worker thread of ordinary
+//! priority, which a busy computer delays however high the priority of the program is. No timer shows this delay. So
+//! [`Passage::measure`] sends a byte through a pair of pseudo-terminals every 10 ms, and takes the time.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,14 +14,14 @@ use units::Span;
 /// Time between two bytes.
 const INTERVAL: Duration = Duration::from_millis(10);
 
-/// Delays of the bytes so far. Clones share them; one that nothing measures has none.
+/// Delays of the bytes so far, shared by all clones; none without [`Passage::measure`].
 #[derive(Debug, Clone, Default)]
 pub struct Passage(Arc<Delays>);
 
 #[derive(Debug)]
 struct Delays {
     began: Instant,
-    /// Longest delay since the last look, us.
+    /// Longest delay since the last call of [`Passage::take_worst`], us.
     worst_us: AtomicU64,
     /// Time at which the byte under way was sent, us since `began`; 0 while none is.
     sent_us: AtomicU64,
@@ -38,7 +38,7 @@ impl Default for Delays {
 }
 
 impl Passage {
-    /// Returns a passage of which a byte came `delay` late.
+    /// Returns a passage with one byte that came `delay` late, and no measurement.
     pub fn late_by(delay: Span) -> Self {
         let passage = Self::default();
         passage.0.worst_us.store(delay.0, Ordering::Relaxed);
@@ -54,7 +54,7 @@ impl Passage {
         Span(self.0.worst_us.swap(0, Ordering::Relaxed).max(under_way))
     }
 
-    /// Sends bytes until the task is cut off. Ends at once where the system has no pseudo-terminal.
+    /// Sends bytes until the task is dropped. Ends at once where the system has no pseudo-terminal.
     pub async fn measure(self) {
         let Ok((mut near, mut far)) = SerialStream::pair() else {
             return;

@@ -1,8 +1,8 @@
 //! Hands tasks to the runtime from this crate.
 //!
-//! The compiler makes the code that polls a task in the crate that hands the task to the runtime, and with the
-//! optimisation of that crate. A release build does not optimise the program above the line (see the profile in
-//! `Cargo.toml`), so tasks of the line, and the scheduler itself, would run several times slower from there.
+//! The compiler makes the code that polls a task in the crate that hands the task to the runtime, with the optimisation
+//! of that crate. A release build does not optimise `app` (see the profile in `Cargo.toml`), so tasks of the line, and
+//! the scheduler itself, would run several times slower from there.
 
 use std::pin::Pin;
 use tokio::runtime::{Handle, Runtime};

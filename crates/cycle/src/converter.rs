@@ -21,8 +21,8 @@ pub(super) enum Finished {
 
 /// A calculation.
 type Work = Box<dyn FnOnce() -> Finished + Send>;
-/// A calculation or its outcome, with the number of jobs dropped before it began: a smaller number than the present one
-/// marks it as stale.
+/// A calculation or its outcome, with the number of jobs that were dropped before the calculation began; a number below
+/// the present one marks it as stale.
 type Numbered<T> = (u64, T);
 
 /// Carries out the calculations of a measuring job, one after the other.
@@ -70,8 +70,8 @@ impl Converter {
         self.dropped += 1;
     }
 
-    /// Returns the next result of the present job. An assertion that failed in a calculation fails here, so that it ends
-    /// the run like one of the cycle.
+    /// Returns the next result of the present job. Fails with the assertion that failed in a calculation, so that the
+    /// run ends like after one of the cycle.
     pub fn next_result(&mut self) -> Option<Finished> {
         loop {
             let next = self.waiting.take();

@@ -56,8 +56,8 @@ impl Failures {
         self.writes[module.0] = 0;
     }
 
-    /// Resets the counts of writes, because the cycle repeats every write at the end of a run until the module confirms
-    /// it.
+    /// Resets the counts of writes: in an abort and at the end of a run the cycle repeats every write until the module
+    /// confirms it.
     pub(super) fn reset_writes(&mut self) {
         self.writes.fill(0);
     }

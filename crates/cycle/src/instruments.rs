@@ -1,7 +1,9 @@
-//! Chooses the next program of each instrument: safe first, then the preparation, then the queries of the measuring job.
+//! Chooses the next program of each instrument: safe first, then the preparation, then the queries of the measuring
+//! job.
 //!
-//! Every instrument has at most one program under way. A program that makes it safe ends the one under way; any other
-//! waits. Safe programs go out when the outputs of the modules are confirmed, or [`SAFE_AFTER`] later.
+//! Every instrument has at most one program under way. A safe program, which makes the instrument safe, ends the one
+//! under way; any other waits. A safe program goes out when the outputs of the modules are confirmed, at the latest
+//! [`SAFE_AFTER`] after it became due.
 
 use super::arrival;
 use bus::instrument::{ProgramAnswer, ProgramRequest, Start};
@@ -42,13 +44,13 @@ pub(super) struct Part {
     pub values: usize,
 }
 
-/// The queries of the measuring job for one instrument, ready to run: one program, so that the link proves only once
-/// that its replies are its own.
+/// The queries of the measuring job for one instrument, ready to run: joined to one program, because the link proves
+/// the replies of each program.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct OpenQuery {
     /// The queries in their order, at least one.
     pub parts: Vec<Part>,
-    /// The commands of all.
+    /// The commands of all queries.
     pub program: Program,
 }
 
@@ -98,11 +100,11 @@ pub(super) enum Purpose {
 /// Whether an instrument is safe, or what it still has to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Safety {
-    /// Nothing: no program has run since it was made safe or set up.
+    /// No program has run since the instrument was made safe or set up.
     Safe,
-    /// A program may have left its output on.
+    /// A program may have left the output of the instrument on.
     MayBeOn,
-    /// The safe program is due; holds the time since when, and the number of tries left.
+    /// The safe program is due since this time, with this number of tries left.
     Due(RigTime, u8),
 }
 
@@ -197,7 +199,7 @@ impl Instruments {
         std::mem::take(&mut self.slots[instrument.index()].parts)
     }
 
-    /// Counts a failed query; returns the number of consecutive ones with this program.
+    /// Counts a failed query; returns the number of consecutive failures of this program.
     pub fn failed(&mut self, instrument: Instrument, program: &'static str) -> u8 {
         let failures = &mut self.slots[instrument.index()].failures;
         let times = failures.entry(program).or_default();
@@ -298,7 +300,7 @@ impl Instruments {
         }
     }
 
-    /// Returns the next answer that has arrived; drops that of a program that a later request has ended.
+    /// Returns the next answer that has arrived; drops the answer of a program that a later request has ended.
     pub fn next_answer(&mut self) -> Option<(Instrument, Purpose, ProgramAnswer)> {
         for slot in &mut self.slots {
             while let Some(answer) = arrival::next((&mut slot.ends.answers, &mut slot.waiting)) {

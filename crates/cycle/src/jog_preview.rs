@@ -1,5 +1,5 @@
-//! Asks the guard about motions; shows how it decides on those that a person may order next, and on the one that it
-//! refused last.
+//! Asks the guard about motions; shows its decisions on the motions that a person may order next, and the motion that
+//! it refused last.
 
 use super::Cycle;
 use machine::guard::{Cleared, Motion, Position, Refusal, Situation};

@@ -19,7 +19,7 @@ pub struct Lateness {
     sum: Span,
     worst: Span,
     window_began: RigTime,
-    /// Worst of the current window, and of the one before; also of bytes.
+    /// Worst lateness, of waits and bytes, in the current window and in the one before.
     windows: [Span; 2],
     passage: Passage,
 }

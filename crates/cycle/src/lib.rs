@@ -1,4 +1,4 @@
-//! The control cycle: the one task that turns the rig; each turn goes through six phases:
+//! The control cycle: the one task that runs the rig, in turns; each turn goes through six phases:
 //!
 //! ```text
 //! scan -> step -> clear -> apply -> record -> publish
@@ -153,7 +153,7 @@ pub struct Cycle {
     bus_alarms: Vec<Alarm>,
     profile: Profile,
     turned_at: RigTime,
-    /// True while the cycle writes only safe values, at the end of a run.
+    /// True in an abort and at the end of a run, when every write makes a module safe.
     making_safe: bool,
     pending_orders: Vec<OrderRequest>,
     /// Order of the jog under way, which the cycle answers when the motion ends.
@@ -181,8 +181,8 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Takes over the lines and the instruments; writes nothing before [`Cycle::run`]. Conversions get the priority of the
-    /// calling thread.
+    /// Takes over the lines and the instruments; writes nothing before [`Cycle::run`]. Conversions get the priority of
+    /// the calling thread.
     pub fn new(
         wiring: Arc<Wiring>,
         pace: Pace,
@@ -285,8 +285,8 @@ impl Cycle {
         }
     }
 
-    /// Moves the answers that have arrived from the lines into the process image, raises an alarm for each module that has
-    /// restarted, and collects the readings of the code reader.
+    /// Takes the answers of lines, instruments and converter, raises an alarm for each module that has restarted, and
+    /// collects the readings of the code reader.
     fn scan(&mut self, now: RigTime) {
         assert!(now >= self.turned_at, "rig time ran backwards");
         self.turned_at = now;

@@ -1,4 +1,4 @@
-//! Measures the wall time of each phase of the control cycle.
+//! Measures the wall time of each phase of the control cycle but `record`.
 
 use std::time::Instant;
 

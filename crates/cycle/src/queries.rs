@@ -19,7 +19,8 @@ const SAFE_WITHIN: Span = Span::ms(5_000);
 const LOOK: Span = Span::ms(50);
 
 impl Cycle {
-    /// Queues the programs of a job, those of one instrument in one run; one that a profile does not have makes the job fail before any program starts.
+    /// Queues the programs of a job, those of one instrument in one run. A program that a profile lacks makes the job
+    /// fail before any program starts.
     pub(super) fn start_queries(&mut self, queries: &[Query]) {
         let programs: Result<Vec<_>, Message> = queries.iter().map(|it| self.program(it)).collect();
         match programs {
@@ -84,7 +85,7 @@ impl Cycle {
         }
     }
 
-    /// Gives each query of a program its replies. After a failure none of them has values.
+    /// Gives each query of a program its replies. After a failure no query has values.
     fn take_queries(&mut self, instrument: Instrument, answer: ProgramAnswer) {
         let parts = self.instruments.take_parts(instrument);
         assert!(!parts.is_empty(), "a program of the job without a query");
@@ -114,7 +115,7 @@ impl Cycle {
         }
     }
 
-    /// Makes values of the replies to a query; those with a block beside the cycle, because a block may be long.
+    /// Makes values of the replies to a query; the converter does it for replies with a block, which may be long.
     fn decode(&mut self, query: Deliverer, replies: Vec<Reply>) {
         let dialect = self.wiring.instrument(query.instrument).profile.dialect;
         let has_block = replies.iter().any(|it| matches!(it, Reply::Block(_)));
@@ -188,7 +189,7 @@ impl Cycle {
     fn prepared(&mut self, instrument: Instrument, answer: ProgramAnswer) {
         let failure = match answer.outcome {
             Ok(_) => return self.instruments.prepared(instrument, true, false),
-            // It was switched on since its last program; now it has its set-up.
+            // The instrument was switched on since its last program; now it has its set-up.
             Err(Failure::PowerCycled) => {
                 return self.instruments.prepared(instrument, false, true);
             }
@@ -234,8 +235,8 @@ impl Cycle {
         }
     }
 
-    /// Makes the instruments safe at the end of a run; sends an alarm for each that has not confirmed it in time. Returns
-    /// true when all have.
+    /// Makes the instruments safe at the end of a run; sends an alarm for each that has not confirmed it in time.
+    /// Returns true when all have.
     pub(super) async fn make_instruments_safe(&mut self) -> bool {
         let began = self.pace.now();
         let end = began + SAFE_WITHIN;

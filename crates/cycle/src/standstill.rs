@@ -9,8 +9,8 @@ use units::Span;
 const SAFE_WITHIN: Span = Span::ms(2000);
 
 impl Cycle {
-    /// Compares every module with the wiring; restores the settings that an interrupted run left in a module; prepares the
-    /// instruments.
+    /// Compares every module with the wiring; restores the settings that an interrupted run has left changed in a
+    /// module; prepares the instruments.
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
         assert!(self.traffic.is_quiet(), "verified while a line is in use");
@@ -48,7 +48,7 @@ impl Cycle {
         }
     }
 
-    /// Makes the outputs of the modules safe, then the instruments. Returns true when every instrument has confirmed it.
+    /// Makes the outputs of the modules safe, then the instruments. Returns true when every instrument has confirmed.
     pub(super) async fn make_safe(&mut self) -> bool {
         self.write_safe_outputs().await;
         self.make_instruments_safe().await

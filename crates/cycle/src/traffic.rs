@@ -35,8 +35,8 @@ fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
         .collect()
 }
 
-/// Returns the modules of a line, by address, that carry inputs of the machine, beams of bins, or contacts of sockets and
-/// inputs of a fixture. On a rig with a feeder the scan omits the inputs of a fixture, which a test reads itself.
+/// Returns the modules of a line, by address, that carry inputs of the machine, beams of bins, or contacts of sockets
+/// and inputs of a fixture. On a rig with a feeder the scan omits the inputs of a fixture, which a test reads itself.
 fn scanned_modules(wiring: &Wiring, line: LineId) -> BTreeSet<ModuleId> {
     let machine = DigitalIn::ALL.iter().copied().map(DigitalInput::from);
     let scanned = machine.chain(wiring.scanned_inputs());

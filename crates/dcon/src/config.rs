@@ -56,7 +56,7 @@ impl BaudCode {
 pub enum DataFormat {
     /// In the unit of the range: `+05.123`.
     Engineering,
-    /// In per cent of full scale: `+051.23`.
+    /// In percent of full scale: `+051.23`.
     Percent,
     /// As two's complement in hex: `4193`.
     Hex,

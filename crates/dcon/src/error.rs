@@ -8,8 +8,8 @@ use std::fmt;
 /// reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReplyError {
-    /// `?AA`: the module understood the command but refused it (no such channel, out of range, needs INIT*, an
-    /// alarm controls the output).
+    /// `?AA`, or `?` to an output: the module understood the command but refused it (no such channel, out of range,
+    /// needs INIT*, an alarm controls the output).
     Refused,
     /// `!` alone: the host watchdog has tripped; outputs keep their safe values until its status is cleared.
     Ignored,

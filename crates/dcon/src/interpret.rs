@@ -1,8 +1,8 @@
 //! Interprets the traffic of a line, for traces and for commands typed by hand: the commands that a family of modules
 //! has, the requests that must never be sent, and the joint meaning of a request and its reply.
 //!
-//! A request may fit several commands ([`decode_request()`]). Its reply shows which of them the host meant: [`interpret`]
-//! returns those that the reply fits.
+//! A request may fit several commands ([`decode_request()`]). Its reply shows which of them the host meant:
+//! [`interpret`] returns those that the reply fits.
 
 use super::frame::{self, hex_digit};
 use super::{AnalogIn, Bits, Command, Reply, ReplyError, decode_request};

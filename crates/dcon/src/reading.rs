@@ -13,7 +13,7 @@ use super::{DataFormat, InputForm, ReplyError, TypeCode};
 pub enum Value {
     /// Value in the unit of the range.
     Engineering(f64),
-    /// Value in per cent of full scale.
+    /// Value in percent of full scale.
     Percent(f64),
     /// Value in two's complement, 32768 = full scale.
     Hex(i16),

@@ -69,7 +69,7 @@ pub(super) enum Shape {
     ChannelRange(Channel),
 }
 
-/// Fails when `text` is a refusal: `?AA`, or `!` alone. [`Shape::decode`] rejects any other wrong lead.
+/// Fails when `text` is a refusal: `?AA`, or of an output command `?` or `!` alone; [`Shape::decode`] checks the lead.
 pub(super) fn check_refusal(text: &[u8], to: Address, effect: Effect) -> Result<(), ReplyError> {
     let output = effect == Effect::Output;
     let mut fields = Fields::new(text);

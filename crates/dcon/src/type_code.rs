@@ -1,4 +1,4 @@
-//! Type codes (TT): each stands for a measuring or output range and its scale.
+//! Type codes (TT): each means a measuring or output range and its scale.
 
 use std::fmt;
 
@@ -35,7 +35,7 @@ impl fmt::Display for Unit {
 pub struct FullScale {
     /// Lower end.
     pub low: f64,
-    /// Upper end; 100 % and 7FFF stand for it.
+    /// Upper end: the value of 100 % and of 7FFF.
     pub high: f64,
     /// Unit of both ends.
     pub unit: Unit,
@@ -85,9 +85,9 @@ impl TypeCode {
         })
     }
 
-    /// Returns the range of a temperature sensor: thermocouples J K T E R S B N C L M L-DIN (codes 0E to 19), and Pt100
-    /// (20 to 23 with 0.00385/K, 24 to 27 with 0.003916/K; 2E and 80 of the 7015), and Pt1000 (2A). Other makers give
-    /// 20 to 24 other ranges: a code counts only together with the model name.
+    /// Returns the range of a temperature sensor: thermocouples J K T E R S B N C L M L-DIN (codes 0E to 19), Pt100 (20
+    /// to 23 with 0.00385/K, 24 to 27 with 0.003916/K; 2E and 80 of the 7015), and Pt1000 (2A). Other makers give 20 to
+    /// 24 other ranges: a code counts only together with the model name.
     fn temperature(self) -> Option<FullScale> {
         let (low, high) = match self.0 {
             0x0E => (-210.0, 760.0),

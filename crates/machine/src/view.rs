@@ -196,7 +196,7 @@ pub struct AlarmLine {
     pub text_zh: String,
     /// `unacknowledged`, `acknowledged`, `returned`.
     pub state: String,
-    /// True when no other alarm was active before it.
+    /// True when no other alarm was active when its cause last appeared.
     pub first_out: bool,
     /// Occurrences since the alarm was last normal.
     pub count: u32,

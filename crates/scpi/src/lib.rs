@@ -23,9 +23,10 @@
 //! 3. A reply that equals the previous reply may be a copy of it, so the link repeats the query once.
 //! 4. After a failure that leaves doubt, the link delivers nothing before a resynchronisation: a new connection (serial
 //!    ports: the end of a message; adapters: a device clear), silence, two numbers through `*ESE` with every other
-//!    reply discarded, the same identity as before, `*ESR?` for a loss of power, `*CLS`, and the whole set-up again. It
-//!    begins with the next program, so that a caller that must first open a contactor has the time for it.
-//! 5. Behind an adapter each message carries its GPIB address, and after each message the adapter states its address.
+//!    reply discarded, the same identity as before, `*ESR?` for a loss of power, `*CLS`, and the whole set-up again.
+//!    The resynchronisation begins with the next program, so that a caller can first open a contactor.
+//! 5. Behind an adapter each message carries the GPIB address of the instrument, and after each message the adapter
+//!    states the address that it uses.
 //!
 //! No host can notice a number that lost digits and kept its end of line, or a lost command without a query that reads
 //! the setting back ([`Step::Ask`] with `expect`).

@@ -128,7 +128,7 @@ pub enum ProgramError {
         argument: String,
         /// Value found, in words.
         found: String,
-        /// Range.
+        /// Permitted range, or the rule that is broken, in words.
         expected: String,
     },
 }

@@ -8,7 +8,7 @@ use units::Span;
 pub enum Step {
     /// A command, which has no reply.
     Send(String),
-    /// A query. The link may repeat it, so it must not remove from the instrument what a repetition would ask for.
+    /// A query. The link may repeat the query, so its reply must not consume what the repetition asks for.
     Ask {
         /// Text of the query; one query, without `;`.
         command: String,

@@ -197,13 +197,13 @@ impl Session {
         self.in_step = false;
     }
 
-    /// Begins a program. When the previous program was abandoned, a resynchronisation comes first.
+    /// Begins a program. After doubt, and when the previous program was abandoned, a resynchronisation comes first.
     pub fn start(&mut self, program: Program) -> Move {
         self.begin(program, true)
     }
 
-    /// Begins a program that makes the instrument safe. After doubt it leaves out the set-up, which may be what fails, and
-    /// connects at once, however often the link has failed before.
+    /// Begins a program that makes the instrument safe. After doubt it leaves out the set-up, which may be what fails,
+    /// and connects at once, however often the link has failed before.
     pub fn start_safe(&mut self, program: Program) -> Move {
         self.backoff = Span(0);
         self.begin(program, false)

@@ -11,8 +11,8 @@ use units::Span;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Echo {
-    /// A number in the standard event status enable register, which the instrument returns and loses when it is
-    /// switched off.
+    /// A number that the link writes to the standard event status enable register; the instrument returns it, and loses
+    /// it when switched off.
     #[default]
     Ese,
     /// The identity alone, for an instrument without that register. After doubt the link waits for a silence as long as
@@ -51,8 +51,8 @@ impl fmt::Display for ExpectedIdentity {
     }
 }
 
-/// Settings of a link. The set-up must contain every setting of the instrument that matters, because the link keeps no
-/// other.
+/// Settings of a link. The set-up must contain every setting of the instrument that matters, because a
+/// resynchronisation restores no other.
 #[derive(Debug, Clone)]
 pub struct LinkSettings {
     /// Instruments that the link accepts; `None` for any.

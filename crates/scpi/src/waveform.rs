@@ -58,8 +58,8 @@ pub enum SamplesError {
     },
 }
 
-/// Count of the numbers of a preamble: format, kind, points, averages, then step, origin and reference of the time, then
-/// those of the voltage.
+/// Count of the numbers of a preamble: format, kind, points, averages, then step, origin and reference of the time,
+/// then those of the voltage.
 const PREAMBLE: usize = 10;
 
 /// Returns the samples of a block: bytes (format 0), or words with the low byte first (format 1).

@@ -76,7 +76,7 @@ quantity!(/** Time as a measured quantity (an operate time), not an instant of t
 quantity!(/** Temperature on the Celsius scale. */ Celsius, "C");
 quantity!(/** Length. */ Millimetre, "mm");
 
-/// Unit of a number whose type does not tell it, such as a reading, a limit or a factor.
+/// Unit of a number whose type does not state it, such as a reading, a limit or a factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unit {
     /// A pure number, without unit.

@@ -12,9 +12,9 @@
 //!
 //! A new type code in the configuration word applies to every channel.
 //!
-//! A reading is the last finished conversion of its channel (see [`super::converter`]) with the module's own gain
-//! error, offset and noise, quantised to 16 bits, to 12 bits in fast mode, to 24 bits for RTD. Factory calibration
-//! (`$AA0`, `$AA1`, `~AAEV`) is not simulated, since a rig never sends it.
+//! A reading is the last finished conversion of its channel (see [`super::converter`]). An RTD input has no errors and
+//! 24 bits; any other has the module's own gain error, offset and noise, and 16 bits, or 12 in fast mode. Factory
+//! calibration (`$AA0`, `$AA1`, `~AAEV`) is not simulated, since a rig never sends it.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

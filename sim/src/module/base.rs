@@ -72,8 +72,8 @@ pub struct ModuleBase {
     checksum_running: bool,
     baud_running: u32,
     reset_unread: bool,
-    /// Constant input signals of a bench file, by channel from 0: V, mA or degrees Celsius, or level 0 or 1; NaN or a missing
-    /// value is an open terminal. Empty in a rig.
+    /// Constant input signals of a bench file, by channel from 0: V, mA or degrees Celsius, or level 0 or 1; NaN or a
+    /// missing value is an open terminal. Empty in a rig.
     pub inputs: Vec<f64>,
 }
 
@@ -290,8 +290,8 @@ fn name(spec: &ModuleSpec) -> Result<String, ConfigError> {
     Ok(name.unwrap_or(printed).into())
 }
 
-/// Reads the key `watchdog`: true, false, or a table of `enabled`, `timeout_s` and `tripped`. Without the key the watchdog
-/// is off; without `timeout_s` its time-out is `plant_ms`, that of the line. Fails on any other value.
+/// Reads the key `watchdog`: true, false, or a table of `enabled`, `timeout_s` and `tripped`. Without the key the
+/// watchdog is off; without `timeout_s` its time-out is `plant_ms`, that of the line. Fails on any other value.
 fn watchdog(keys: &Table, plant_ms: f64) -> Result<Watchdog, ConfigError> {
     let tenths_of = |seconds: f64| (seconds * 10.0).round().clamp(1.0, 255.0) as u8;
     let plant_s = plant_ms / 1e3;

@@ -361,7 +361,7 @@ impl Family for Counter {
         self.outputs = 0;
     }
 
-    /// Restarts the counts at the preset, as a power loss does (the battery of the 7080B keeps them).
+    /// Restarts the counts at the preset, as a power loss does; the battery of a 7080B is not simulated.
     fn restart(&mut self, _plate: &ModuleBase) {
         self.outputs = 0;
         for channel in &mut self.channels {

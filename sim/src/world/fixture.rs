@@ -101,7 +101,7 @@ impl Fixture {
         }
     }
 
-    /// Returns the instant at which the interlock of the jaws looks next, microseconds; `None` while it holds nothing.
+    /// Returns the instant at which the interlock of the jaws checks next, microseconds; `None` while it holds nothing.
     pub fn next_us(&self) -> Option<u64> {
         match self {
             Self::Relay(_) => None,

@@ -214,7 +214,7 @@ impl Magazine {
         format!("R{seed:04X}-{:06}", body + 1)
     }
 
-    /// Creates reference part `index`; after the last one the first one follows again.
+    /// Creates reference part `index`; every one past the last is the first one again.
     fn reference_part(&self, index: u64, now_us: u64, faults: &WorldFaults) -> Option<Specimen> {
         let place = index - self.filled_at.0;
         let body = if place < self.lot.reference_parts() {

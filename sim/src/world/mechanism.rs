@@ -199,7 +199,7 @@ impl Mechanism {
         self.driven.push_back((now_us, what));
     }
 
-    /// Cancels all faults; a fault that has struck keeps its effects.
+    /// Cancels the faults that have not struck yet; parameters of the whole rig stay.
     pub fn cancel_faults(&mut self) {
         self.faults.clear();
         self.scheduled

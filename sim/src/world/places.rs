@@ -6,7 +6,7 @@ use crate::truth::{BodyTruth, PartTruth, Place};
 /// Places of the line between magazine and bin.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
-    /// Part in the pocket, before the pusher.
+    /// Part in the pocket, in front of the pusher at rest.
     pub pocket: Option<Box<Part>>,
     /// Part in front of the moving pusher.
     pub pushed: Option<Box<Part>>,
@@ -47,7 +47,7 @@ impl Places {
         self.done.clear();
     }
 
-    /// Returns the truth of every lot part that has entered the nest and is not forgotten, in that order.
+    /// Returns the truth of every lot part that has entered the nest and is not forgotten, in order of entry.
     pub fn truth(&self) -> Vec<PartTruth> {
         let inside = [&self.nest, &self.carried].into_iter().flatten();
         let done = self.done.iter().map(|body| body.part.clone());

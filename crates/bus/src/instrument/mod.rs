@@ -1,5 +1,5 @@
-//! Links to SCPI instruments: a link carries out on a stream each next step of its [`Session`] (open, write, ask,
-//! drain), with a deadline for each.
+//! Links to SCPI instruments: a link carries out the moves of its [`Session`] (open, write, ask, drain) on a stream,
+//! with a deadline for each.
 //!
 //! The crate [`scpi`] proves that a reply belongs to its query; a link adds a clock, a stream and a log of the traffic.
 

@@ -1,5 +1,5 @@
-//! The task of an instrument: runs one program at a time; a later request ends the one under way. When nobody sends
-//! requests any more, it makes the instrument safe.
+//! The task of an instrument: runs one program at a time; a later request ends the one under way. Once a channel of the
+//! task closes, the task makes the instrument safe.
 
 use super::Link;
 use crate::{Pace, Timer};
@@ -43,9 +43,9 @@ pub struct ProgramAnswer {
     pub outcome: Result<Vec<Reply>, Failure>,
 }
 
-/// Runs programs until one of the channels closes, then the program `safe` if the output may be on: however the cycle
-/// ends, it leaves no source on. A request that arrives while a program runs ends that program, which then has no answer;
-/// any other request has exactly one.
+/// Runs programs until one of the channels closes, then the program `safe` if the output may be on, so that no source
+/// stays on however the cycle ends. A request that arrives while a program runs ends that program, which then has no
+/// answer; any other request has exactly one.
 ///
 /// # Errors
 /// Fails when the output may still be on: the safe program fails twice, or does not end in time.

@@ -1,8 +1,9 @@
 //! Feed-forward with lag: the inverse of an identified chamber, and the gain that it learns on ramps.
 //!
-//! A chamber answers power like `K/(tau s + 1) + ki/s`. Its inverse turns the rate of the set point into power through
-//! one lag of `(K + ki tau)/ki`; losses and fan add what holds the temperature. On a steady heating ramp the ratio of the
-//! whole power to that of the feed-forward shows how strong the heater is today.
+//! The transfer function of a chamber, from power to temperature, is `K/(tau s + 1) + ki/s`. Its inverse turns the rate
+//! of the set point into power through one lag of `(K + ki tau)/ki`; to this comes the power that balances losses and
+//! fan. On a steady heating ramp the power of the feed-forward over the whole power gives the gain of the present
+//! heater.
 
 use super::Task;
 use crate::ramp::SetPoint;
@@ -62,8 +63,8 @@ impl FeedForward {
         self.last
     }
 
-    /// Takes the power of this second. At the end of a steady heating ramp learns the gain, and returns the drop of the
-    /// power of the feed-forward; returns 0 at any other time.
+    /// Takes the power of this second. At the end of a steady heating ramp learns the gain, and returns by how much the
+    /// power of the feed-forward drops, 1 = full heater; returns 0 at any other time.
     pub fn learn(&mut self, set: &SetPoint, power: f64, task: &Task) -> f64 {
         let steady =
             set.cruises() && set.rate_k_per_s > 0.0 && power > task.lowest && power < task.highest;

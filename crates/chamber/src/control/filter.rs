@@ -45,7 +45,7 @@ impl Delay {
         }
     }
 
-    /// Takes the sample of this second and returns the delayed one; before that exists, the oldest.
+    /// Takes the sample of this second and returns the delayed one; the oldest one while no sample is old enough.
     pub fn step(&mut self, sample: f64) -> f64 {
         self.past.push_back(sample);
         if self.past.len() > self.seconds + 1 {

@@ -1,7 +1,8 @@
 //! Feedback and feed-forward of a chamber: from a set point and a reading to heater and vent, once a second.
 //!
-//! One signed power serves both: above zero it is the duty of the heater, below zero the vent opens ([`SplitRange`]).
-//! [`Law`] is the feedback; all of them accept the same feed-forward, which does most of the work on a ramp.
+//! One signed power serves heater and vent: above zero it is the duty of the heater, below zero it opens the vent
+//! ([`SplitRange`]). [`Law`] lists the laws of the feedback; all take the same feed-forward, which does most of the
+//! work on a ramp.
 
 pub mod door;
 pub mod feed_forward;

@@ -1,7 +1,7 @@
 //! Split range: one signed power becomes the duty of the heater or the opening of the vent.
 //!
-//! Heat reaches the air through the heater, which has a lag; the vent changes the air at once. A loop that is tuned on the
-//! heater would oscillate on the vent. [`VentLag`] gives the vent a lag too, so that one tuning fits both.
+//! Heat reaches the air through the heater, which has a lag; the vent changes the air at once. A loop that is tuned on
+//! the heater would oscillate on the vent. [`VentLag`] gives the vent a lag too, so that one tuning fits both.
 
 use super::Observed;
 use crate::tune::Identified;
@@ -9,9 +9,11 @@ use crate::tune::Identified;
 /// Least excess of the chamber over ambient at which the vent opens, K.
 const LEAST_EXCESS_K: f64 = 1.0;
 
-/// Lag of the vent, as a share of the time constant of the response to the heater: about the share of the heater itself.
+/// Lag of the vent, as a share of the time constant of the response to the heater; the lag of the heater is about the
+/// same.
 const VENT_LAG: f64 = 0.4;
-/// Power up to which the vent stays behind, 1 = full heater: after an upset, as an open door, it acts at once.
+/// Greatest power by which the vent lags behind, 1 = full heater: the vent answers an upset, such as an open door, at
+/// once.
 const MOST_BEHIND: f64 = 0.1;
 
 /// Outputs of one second.
@@ -77,7 +79,7 @@ impl SplitRange {
     }
 }
 
-/// Power of the vent behind the one that the loop demands, stepped once a second; starts at none.
+/// State of the vent's lag: the power of the vent follows the one that the loop demands; stepped once a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VentLag {
     power: f64,

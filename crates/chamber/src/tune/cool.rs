@@ -19,7 +19,7 @@ const ENDS_K_PER_S: f64 = -0.3 / 60.0;
 /// Longest cooling, s.
 const LONGEST_S: usize = 5_400;
 
-/// Returns true when readings of a rest, one a second, are those of a cold chamber; `drift` is the slope at their end, K/s.
+/// Returns true when these readings of a rest, one a second, are of a cold chamber; `drift`: slope at their end, K/s.
 pub fn is_cold(rest_c: &[f64], drift: f64) -> bool {
     let rise_k = rest_c
         .last()
@@ -45,8 +45,8 @@ pub struct Cooled {
 }
 
 impl Cooled {
-    /// Returns the temperature around the chamber, C: the one that balances fan, losses and vent; `None` for a chamber that
-    /// loses no heat.
+    /// Returns the temperature around the chamber, C: the one that balances fan, losses and vent; `None` for a chamber
+    /// that loses no heat.
     pub fn ambient_c(&self, chamber: &Identified) -> Option<f64> {
         let heated = chamber.fan - self.slope_k_per_s / chamber.slope_k_per_s;
         let removed_per_k = chamber.loss_per_k + chamber.vent_per_k;
@@ -55,7 +55,7 @@ impl Cooled {
 }
 
 impl Cooling {
-    /// Takes the reading of a second, C; returns the end once the chamber hardly falls.
+    /// Takes the reading of a second, C; returns the end of the cooling once the temperature hardly falls.
     pub fn step(&mut self, measured_c: f64) -> Option<Cooled> {
         self.readings_c.push(measured_c);
         let from = self.readings_c.len().checked_sub(SLOPE_S)?;

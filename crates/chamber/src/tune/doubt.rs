@@ -2,7 +2,7 @@
 
 /// Step of a figure for its derivative, as a share of the figure.
 const STEP: f64 = 1e-3;
-/// Least step, so that a figure of zero has a derivative.
+/// Least step; a share of a figure of zero would be no step.
 const LEAST_STEP: f64 = 1e-4;
 
 /// Returns the standard uncertainties of the figures of a model that was fitted to a response, one sample a second.

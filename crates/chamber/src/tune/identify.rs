@@ -34,7 +34,7 @@ const LEAST_DELAY_S: f64 = 4.2;
 const LEAST_RISE_K: f64 = 3.0;
 /// Least rise of a later minute of the heat stage, beyond the drift, K: less shows a heater that has broken.
 const LEAST_MINUTE_K: f64 = 0.3;
-/// That minute, s.
+/// Length of each minute compared with [`LEAST_MINUTE_K`], s.
 const MINUTE_S: usize = 60;
 /// Coolings after which a chamber that still drifts is identified as it is.
 const MOST_COOLINGS: usize = 2;
@@ -93,7 +93,7 @@ pub enum IdentifyError {
     },
 }
 
-/// Answer of a run to one second.
+/// Outcome of one second of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// Outputs until the next second.
@@ -210,7 +210,7 @@ impl Identification {
         }
     }
 
-    /// Returns the response to the step, K per unit of power, the drift before it, K/s, and the temperature at the step, C.
+    /// Returns the response to the step, K per unit of power, the drift before it, K/s, and the temperature then, C.
     fn response(&self) -> (Vec<f64>, f64, f64) {
         let [rest, heat, ..] = LENGTHS_S;
         let drift = slope(&self.readings_c[rest - DRIFT_S..=rest]);
@@ -304,8 +304,8 @@ impl Identification {
 mod tests {
     use super::*;
 
-    /// Returns the readings, C, of a chamber that settles within a minute at a step of the heater and then moves by a slope,
-    /// K/s.
+    /// Returns the readings, C, of a chamber that settles within a minute at a step of the heater and then moves by a
+    /// slope, K/s.
     fn readings_c(slope_k_per_s: f64) -> Vec<f64> {
         let [rest, heat, coast, vent] = LENGTHS_S;
         let (mut heated_s, mut settled_k) = (0.0, 0.0);
@@ -319,7 +319,7 @@ mod tests {
         (0..=rest + heat + coast + vent).map(reading).collect()
     }
 
-    /// Runs over these readings; returns the last answer.
+    /// Runs over these readings; returns the last outcome.
     fn run_over(readings_c: &[f64]) -> Result<Step, IdentifyError> {
         let mut run = Identification::new(0.15, 25.0, 90.0);
         let mut answers = readings_c.iter().map(|it| run.step(*it));

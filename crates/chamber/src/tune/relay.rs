@@ -51,7 +51,7 @@ impl Oscillation {
     }
 }
 
-/// Answer of an auto-tune to one second.
+/// Outcome of one second of an auto-tune.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// Signed power until the next second, for the split range.

@@ -1,5 +1,5 @@
-//! Finds the temperature of the room around a chamber whose response is known: rest, then a cooling if the rest shows that the
-//! chamber is warm.
+//! Finds the temperature of the room around a chamber whose response is known: rest, then a cooling if the rest shows
+//! that the chamber is warm.
 
 use super::Identified;
 use super::cool::{Cooling, is_cold};
@@ -9,8 +9,8 @@ use crate::statistics::slope;
 /// Length of the rest, s; its slope comes from the last part.
 const REST_S: usize = 180;
 const SLOPE_S: usize = 120;
-/// Greatest excess over the room that the slope of a rest may show for a chamber that counts as cold, K. Walls that take up
-/// the heat of the fan show some 2 K, and 0.3 K more for each kelvin by which the whole chamber is warm.
+/// Greatest excess over the room that the slope of a rest may show for a chamber that counts as cold, K. Walls that
+/// take up the heat of the fan show some 2 K, and 0.3 K more for each kelvin by which the whole chamber is warm.
 const COLD_K: f64 = 3.0;
 /// Vent open, no heat.
 const VENTED: Command = Command {
@@ -18,7 +18,7 @@ const VENTED: Command = Command {
     vent: 1.0,
 };
 
-/// Answer to one second.
+/// Outcome of one second of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// The outputs until the next second.
@@ -55,8 +55,8 @@ impl RoomSearch {
         self.chamber
     }
 
-    /// Takes the reading of this second, C. A cold chamber has begun at the temperature of the room; a warm one shows it at the
-    /// end of its cooling.
+    /// Takes the reading of this second, C. A cold chamber has begun at the temperature of the room; for a warm chamber
+    /// this temperature follows from the end of the cooling.
     pub fn step(&mut self, measured_c: f64) -> Step {
         if let Some(cooling) = &mut self.cooling {
             let cooled = cooling.step(measured_c);

@@ -1,4 +1,4 @@
-//! Energy balance: compares the slope of the sensor with the slope that the model of the chamber makes of the same
+//! Energy balance: compares the slope of the sensor with the slope that the model of the chamber computes from the same
 //! power.
 
 use super::lasting::{Lasting, Recent};
@@ -14,8 +14,8 @@ const LASTS_S: u32 = 30;
 const SHARE: f64 = 0.5;
 /// Difference of the slopes that is always allowed, K/s.
 const FLOOR_K_PER_S: f64 = 1.0 / 60.0;
-/// Allowed difference as a share of the slope that the recent power makes: mains voltage varies, and walls may still be
-/// cold.
+/// Allowed difference as a share of the slope that the recent power causes: mains voltage varies, and walls may still
+/// be cold.
 const MODEL_SHARE: f64 = 0.4;
 /// Time over which power counts as recent, s.
 const RECENT_S: f64 = 120.0;

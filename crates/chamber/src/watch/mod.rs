@@ -39,7 +39,7 @@ pub enum Trouble {
     SensorJump,
     /// Control and reference sensor disagree.
     SensorsDiffer,
-    /// A reading stands still under power.
+    /// A reading does not change although the heater has power.
     SensorStuck,
     /// The slope does not fit the power.
     EnergyBalance,

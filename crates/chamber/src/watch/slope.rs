@@ -20,8 +20,8 @@ impl Default for SlidingSlope {
 }
 
 impl SlidingSlope {
-    /// Takes a reading, C, and returns the slope of the last minute, K/min; `None` in the first minute, and in the minute
-    /// after a reading that is not finite.
+    /// Takes a reading, C, and returns the slope of the last minute, K/min; `None` in the first minute, and in the
+    /// minute after a reading that is not finite.
     pub fn step(&mut self, reading_c: f64) -> Option<f64> {
         if !reading_c.is_finite() {
             self.recent.clear();

@@ -1,7 +1,7 @@
-//! Heat without command in a chamber whose answer to power is not known yet: before and during its identification.
+//! Heat without command in a chamber whose response to power is not known yet: before and during its identification.
 //!
-//! Air without power warms only at what is hotter: walls and rack that have kept the heat of an earlier batch, or a heater
-//! that a shorted power unit still feeds. They differ in how the rise goes on:
+//! Air without power warms only at what is hotter: walls and rack that have kept the heat of an earlier batch, or a
+//! heater that a shorted power unit still feeds. The rise shows which it is:
 //!
 //! | source | rise of the air |
 //! |---|---|
@@ -17,8 +17,8 @@ use crate::control::split_range::Command;
 
 /// Time after which walls and air have evened out, s.
 const EVENS_S: u32 = 40;
-/// Rise from walls that are hotter than the air, K: with the fan on and the vent open they are 10 K above it, after a
-/// door that was open 20 K.
+/// Rise from walls that are hotter than the air, K: with the fan on and the vent open they are 10 K above it; after the
+/// door was open, 20 K.
 const WALL_K: f64 = 25.0;
 /// Length of the stretch that gives the slope, s.
 const SLOPE_S: usize = 20;
@@ -94,7 +94,8 @@ mod tests {
         })
     }
 
-    /// Returns a chamber that was hot for an hour, cooled by its vent to the given reading, and stood open for some seconds.
+    /// Returns a chamber that was hot for an hour, then cooled by its vent to `cooled_c`, then stood open for some
+    /// seconds.
     fn warm(hot_c: f64, cooled_c: f64, open_s: usize) -> Plant {
         let mut plant = Plant::at(hot_c);
         let vented = Command {

@@ -6,12 +6,12 @@ use serde::Deserialize;
 pub const FULL_SCALE_V: f64 = 10.0;
 /// Resolution of a +-10 V input of 12 bits, volts per step.
 pub const LSB_V: f64 = 2.0 * FULL_SCALE_V / 4096.0;
-/// Highest voltage at a terminal that a test or a calibration may plan to read; the other 2 % of the full scale are in
+/// Highest voltage at a terminal that a test or a calibration may plan to read. The last 2 % of the full scale are in
 /// reserve for the errors of sources, references and input.
 pub const READABLE_V: f64 = 0.98 * FULL_SCALE_V;
 
-/// Accuracies before calibration: half widths, except for fields documented as standard deviations. Those that
-/// `rig.toml` of a rig with a rack omits, because no source ramps and no counter gates there, are zero.
+/// Accuracies before calibration: half widths, except for fields documented as standard deviations. Fields that
+/// `rig.toml` of a rig with a rack omits are zero, because no source ramps and no counter gates there.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct AccuracySettings {
     /// Gain error of analog inputs, % of reading.

@@ -27,22 +27,22 @@ pub struct SocketResult {
     pub socket: u16,
     /// Verdict of the part.
     pub verdict: Verdict,
-    /// Each result against its limit.
+    /// Judgement of each result against its limit.
     pub judgements: Vec<(Characteristic, Judgement)>,
     /// Results, with the replies from which they came.
     pub record: TestRecord,
 }
 
 named! {
-    /// Trouble of the heat of a batch: the heat goes off, and no part is judged.
+    /// Trouble with the heating of a batch: the test switches the heater off and judges no part.
     HeatTrouble {
         /// A thermometer of the air has no usable reading.
         ThermometerBroken = "thermometer_broken",
         /// A thermometer moves faster than the air can.
         ThermometerJump = "thermometer_jump",
-        /// Both thermometers of the air disagree.
+        /// The two thermometers of the air disagree.
         ThermometersDiffer = "thermometers_differ",
-        /// A thermometer stands still under power.
+        /// The reading of a thermometer does not change although the heater has power.
         ThermometerStuck = "thermometer_stuck",
         /// The air does not warm or cool as its power demands.
         EnergyBalance = "energy_balance",
@@ -56,7 +56,7 @@ named! {
         CoolingTooSlow = "cooling_too_slow",
         /// The air warms or cools faster than the recipe allows.
         RampTooFast = "ramp_too_fast",
-        /// The answer of the air to its power has no usable figures.
+        /// The identification finds no usable response of the air to the heater.
         NotIdentified = "heating_not_identified",
         /// The limiter on the heater has tripped.
         LimiterTripped = "limiter_tripped",
@@ -69,14 +69,14 @@ named! {
     }
 }
 
-/// What the test of a batch has met that concerns the rig and not a part; the station raises an alarm.
+/// Trouble with the rig that the test of a batch has met; the station raises an alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum BatchTrouble {
-    /// Trouble of the heat.
+    /// Trouble with the heating.
     Heat(HeatTrouble),
     /// Sockets whose contact was open before heating, in words; the test goes on.
     SocketsOpen(String),
-    /// Lag of the lot, s, and the one that earlier batches or the recipe state; the test goes on.
+    /// Thermal lag of the lot, s, then the lag that earlier batches or the recipe state, s; the test goes on.
     LagUnexpected(u32, u32),
 }
 
@@ -91,7 +91,7 @@ pub struct BatchOutcome {
     pub found: Option<Found>,
 }
 
-/// What a test has recorded of air and contacts, for the history.
+/// Temperatures of the air and switchings of the contacts that a test has recorded, for the history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BatchCurve {
     /// Time zero of the curve.
@@ -107,11 +107,11 @@ pub struct BatchCurve {
 pub enum BatchProgress {
     /// The test goes on; holds the state of the runner that carries out the present stage.
     Running(RunnerState),
-    /// Every part is judged. The test has switched its heat off.
+    /// Every part is judged. The test has switched its heater off.
     Judged(BatchOutcome),
 }
 
-/// The test of a batch under way. Contacts of the sockets are in the image: the scan reads them all the time.
+/// The test of a batch under way. It takes the contacts of the sockets from the image, because the scan reads them.
 pub trait BatchTest: Debug + Send {
     /// Advances the test as far as it can. `done` is the outcome of the job that an earlier step requested; the caller
     /// passes it once. The test has no job under way when it returns [`BatchProgress::Judged`].
@@ -126,6 +126,6 @@ pub trait BatchTest: Debug + Send {
     /// Returns the progress of the test as pages show it.
     fn shown(&self) -> BatchShown;
 
-    /// Returns what the history keeps of air and contacts; `None` for a test without parts, and before the first reading.
+    /// Returns air and contacts for the history; `None` for a test without parts, and before the first reading.
     fn curve(&self) -> Option<BatchCurve>;
 }

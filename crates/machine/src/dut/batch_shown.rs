@@ -5,11 +5,11 @@ use utoipa::ToSchema;
 
 /// Seconds between two points of a new curve.
 const STEP_S: u32 = 5;
-/// Points above which a curve for a view keeps every second one: a view holds the whole curve.
+/// Number of points above which the curve in a view drops every second one; a view holds the whole curve.
 const MOST_POINTS: usize = 300;
-/// The same for the curve that the history keeps: 4 hours at the first step.
+/// Number of points above which the curve in the history drops every second one: 4 hours at the first step.
 const MOST_KEPT: usize = 2_880;
-/// Switchings that a socket shows, the last ones: an intermittent contact has thousands.
+/// Number of latest switchings that a view shows of a socket; an intermittent contact has thousands.
 const MOST_SWITCHED: usize = 12;
 
 /// Temperature of the air during the test of a batch; the members have equal lengths.
@@ -21,7 +21,7 @@ pub struct AirCurve {
     pub set_c: Vec<Option<f64>>,
     /// Reference thermometer, C.
     pub reference_c: Vec<f64>,
-    /// Slope of the reference thermometer over a minute, K/min; null in the first minute. Views have the present one only.
+    /// Slope of the reference thermometer over a minute, K/min; `None` in the first minute. Only the history stores it.
     #[serde(skip)]
     pub rate_k_per_min: Vec<Option<f64>>,
     /// Seconds between two points.
@@ -52,7 +52,7 @@ pub struct SocketSwitched {
     pub socket: u16,
     /// Times at which the contact opened, s of the curve; the last twelve.
     pub opened_s: Vec<f64>,
-    /// Times at which it closed, s of the curve; the last twelve.
+    /// Times at which the contact closed, s of the curve; the last twelve.
     pub closed_s: Vec<f64>,
 }
 
@@ -102,7 +102,7 @@ impl AirCurve {
         }
     }
 
-    /// Takes a second, and keeps it when the present step wants it.
+    /// Adds the air of this second if at least one step has passed since the last point.
     pub fn push(&mut self, now: &AirSecond) {
         let next = self.t_s.last().map(|last| last + self.step_s);
         if next.is_some_and(|next| now.t_s < next) {

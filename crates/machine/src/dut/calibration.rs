@@ -23,7 +23,7 @@ impl Calibration {
         }
     }
 
-    /// Returns true when both follow from the same certificate; false for factors that parts have shown.
+    /// Returns true when both follow from one certificate; false for relays, whose factors come from parts.
     pub fn has_certificate_of(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Thermostat(it), Self::Thermostat(other)) => it.certificate == other.certificate,

@@ -21,7 +21,7 @@ pub struct Definition {
     pub key: &'static str,
     /// Unit in which values and limits are written.
     pub unit: Unit,
-    /// What the mean of several readings stands for.
+    /// What the mean of several readings estimates, which decides how their scatter enters the uncertainty.
     pub mean_of: MeanOf,
     /// Bin for a part that fails this characteristic.
     pub bin: Bin,

@@ -99,14 +99,14 @@ pub trait DeviceUnderTest {
         panic!("a kind without experiments gets one: {what:?}")
     }
 
-    /// Returns the acts that cool the rack after a test and after any restart (`on`), or that end the cooling before the
-    /// door is unlocked. They also leave every source of heat off.
+    /// Returns the acts that cool the rack after a test and after any restart, or without `on` those that end the
+    /// cooling before the door is unlocked. Both leave every source of heat off.
     fn cooling(&self, _on: bool) -> Vec<Act> {
         Vec::new()
     }
 
-    /// Returns thermometers in the air around the rack. A rack counts as cool only when one of them has a reading and
-    /// none shows heat: a rack thermometer that stands still must not unlock the door.
+    /// Returns the thermometers in the air around the rack. A rack counts as cool only when one of these has a reading
+    /// and none reads hot: a stuck thermometer in the rack must not unlock the door.
     fn air_thermometers(&self) -> Vec<Thermometer> {
         Vec::new()
     }

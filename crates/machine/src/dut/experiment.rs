@@ -1,4 +1,4 @@
-//! Experiments on a rig with a rack, without parts: what one shall find, and what it has found.
+//! Experiments without parts on a rig with a rack: what a person orders, and the figures found.
 
 use serde::Serialize;
 

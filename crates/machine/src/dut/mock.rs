@@ -1,4 +1,4 @@
-//! A kind of device for tests of batches: it heats nothing, reads the rack once a second, and judges by the socket.
+//! A kind of device for tests of batches: it switches an output for a fixed time, and passes every part not in `void`.
 
 use super::batch::{
     BatchCurve, BatchOrder, BatchOutcome, BatchProgress, BatchTest, BatchTrouble, SocketResult,

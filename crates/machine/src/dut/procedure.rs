@@ -69,7 +69,7 @@ pub trait TestProcedure {
     /// rig, not of the part.
     fn range_mismatch(&self) -> Option<&RangeMismatch>;
 
-    /// Returns true when the test has ended without proof that the socket is free of dangerous voltage: trouble of the rig.
+    /// Returns true when the test has ended without proof that its socket is free of dangerous voltage.
     fn is_live(&self) -> bool {
         false
     }

@@ -134,8 +134,8 @@ pub trait KindRecipe {
     /// keys that ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault>;
 
-    /// Returns the fault of a test that takes too long with this number of slow repeats; `None` for a kind whose parts take
-    /// seconds.
+    /// Returns the fault of a test that takes too long with this number of slow repeats; `None` for a kind whose parts
+    /// take seconds.
     fn too_long(&self, _limits: &Limits, _slow_repeats: u32) -> Option<Fault> {
         None
     }

@@ -30,8 +30,8 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the verdict of a part that failed for `reason`, which concerns no limit, and for `others`, which do; the
-    /// worst bin comes first.
+    /// Returns the verdict of a part whose test ended early for `reason` and which failed for `others` too; the worst
+    /// bin comes first.
     pub fn failed(reason: Reason, mut others: Vec<Reason>) -> Self {
         others.push(reason);
         others.sort_by_key(|reason| rank(reason.bin()));

@@ -95,8 +95,8 @@ impl Budget {
         self
     }
 
-    /// Narrows all terms by one factor, so that k = 2 covers 95.45 % where a few bounded terms make most of the sum: k = 2
-    /// of a single rectangular distribution would cover more than all of it (EA-4/02, S9.14). Call this after all
+    /// Narrows all terms by one factor, so that k = 2 covers 95.45 % where a few bounded terms make most of the sum: k
+    /// = 2 of a single rectangular distribution would cover more than all of it (EA-4/02, S9.14). Call this after all
     /// terms are added.
     pub fn covering(mut self) -> Self {
         let variance = self.combined().powi(2);

@@ -1,10 +1,10 @@
 //! Evidence against a promised standard deviation: pooled residuals, tested anew after each of them.
 //!
-//! A residual has a promised variance: the sum of that of the term under test and those of all other terms. If the
-//! standard deviation of the term is `f` times the promised one, the likelihood of the residual changes by a known
-//! ratio. The evidence is the mean of these likelihood ratios over the factors `f` in [`FACTORS`]. While the promise
-//! holds, the expectation of the evidence never grows, so the evidence reaches `1 / rate` in a share of at most `rate`
-//! of all lots, however often it is tested (Ville's inequality). A smaller scatter than promised is no evidence.
+//! The promised variance of a residual is the sum of the promised variance of the term under test and the variances of
+//! all other terms. If the standard deviation of the term is `f` times the promised one, the likelihood of the residual
+//! changes by a known ratio. The evidence is the mean of these ratios over the factors `f` in [`FACTORS`]. While the
+//! promise holds, the expectation of the evidence never grows, so the evidence reaches `1 / rate` in a share of at most
+//! `rate` of all lots, however often it is tested (Ville's inequality). A smaller scatter than promised is no evidence.
 
 use super::factor::Deviation;
 use super::repetition::student;

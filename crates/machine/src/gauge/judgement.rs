@@ -1,7 +1,7 @@
 //! Judges one result against its limit, with a guard band.
 //!
 //! Rule `guard_band` (ISO 14253-1, ILAC-G8 with w = U): pass when the value lies inside the limit by at least U, fail
-//! when it lies outside by at least U, conditional in between. Rule `simple` compares the value alone. A result
+//! when it lies outside by more than U, conditional in between. Rule `simple` compares the value alone. A result
 //! without a usable number is void and never passes.
 
 use super::budget::Reading;
@@ -75,9 +75,9 @@ impl fmt::Display for Side {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
-    /// Inside the limit; under the rule this is certain.
+    /// Inside the limit; under `guard_band` by at least U.
     Pass,
-    /// Outside the limit; under the rule this is certain.
+    /// Outside the limit; under `guard_band` by more than U.
     Fail(Side),
     /// Within U of the limit, on the side given: confirmation measurements must decide.
     Conditional(Side),

@@ -1,13 +1,13 @@
 //! The mean of several readings of one part, and its uncertainty.
 //!
 //! Averaging n readings divides the random terms of the budget by the root of n. If the readings scatter more than
-//! those terms explain, the excess becomes a term of its own (type A, GUM 4.2); [`MeanOf`] decides what the mean stands
-//! for, and therefore how large this term is. A standard deviation of few readings is widened to Student's t, so that
-//! k = 2 covers as much as with many (GUM G.3).
+//! those terms explain, the excess becomes a term of its own (type A, GUM 4.2); [`MeanOf`] says what the mean
+//! estimates, and thereby how large this term is. A standard deviation of few readings is widened to Student's t, so
+//! that k = 2 covers as much as with many (GUM G.3).
 
 use super::budget::{Budget, COVERAGE_FACTOR, Reading, Term};
 
-/// What the mean of several readings stands for.
+/// What the mean of several readings estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeanOf {
     /// A property of the part: a threshold, the coil. Its readings scatter at least by the random terms of the budget.

@@ -10,7 +10,7 @@ use lpm::{Pose, Shape, View, outlines};
 pub struct Drawn {
     /// Id in the scene; for a part `part_pocket`, `part_pusher`, `part_nest` or `part_gripper`.
     pub id: String,
-    /// Actuators that carry it, each with the body's displacement per millimetre of stroke.
+    /// Actuators that carry the body, each with the body's displacement per millimetre of stroke, mm.
     pub rides: Vec<(Actuator, [f64; 3])>,
     /// Silhouettes from above, x and y in mm.
     pub above: Vec<Vec<[f64; 2]>>,

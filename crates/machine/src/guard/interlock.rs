@@ -26,8 +26,8 @@ pub struct Interlock {
 }
 
 impl Interlock {
-    /// Returns the actuator that `motion` drives to the end in question; `None` for any other motion. `stroke_mm` returns
-    /// the low and high end of a stroke.
+    /// Returns the actuator that `motion` drives to [`Self::end`]; `None` for any other motion. `stroke_mm` returns the
+    /// low and high end of a stroke.
     fn concerns(
         &self,
         motion: &Motion,

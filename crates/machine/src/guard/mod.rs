@@ -86,7 +86,7 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// Resolves the scene and checks that every actuator has its stroke free in the empty rig at rest.
+    /// Resolves the scene; checks that each actuator but the escapement has its stroke free in the empty rig at rest.
     ///
     /// # Errors
     /// Fails with a [`GuardError`] that names the place in `scene.toml`.

@@ -33,7 +33,7 @@ pub struct GuardSettings {
 pub struct Policy {
     /// Distance that any two bodies without a pair rule must exceed, mm, >= 0.
     pub default_margin_mm: f64,
-    /// How far a part may be pressed into its support or its pusher, mm, which covers flatness and mould seams; the
+    /// How far a part may be pressed into its support or its pusher, mm: it covers flatness and mould seams. The
     /// default of `depth_mm` in pairs that may touch.
     pub touch_depth_mm: f64,
     /// Least distance of the pins from the outline of the body, mm.

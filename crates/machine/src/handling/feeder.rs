@@ -39,7 +39,7 @@ pub struct Feeder {
 }
 
 impl Feeder {
-    /// Makes a feeder with one nest and an empty ledger.
+    /// Makes a feeder with one nest; the sequence begins with empty places.
     pub fn new(table: AxisTable) -> Self {
         Self {
             table,

@@ -31,8 +31,8 @@ pub enum PartRole {
 pub struct Part {
     /// Role and number of the part.
     pub role: PartRole,
-    /// Serial count over all parts of the run, reference parts included, from 1. The history publishes the count of the
-    /// last part whose rows are on the disk.
+    /// Running number over all parts of the run, reference parts included, from 1. The history publishes the number of
+    /// the last part whose rows are on the disk.
     pub ordinal: u64,
     /// Bin of the part, after its verdict.
     pub bin: Option<Bin>,

@@ -1,12 +1,12 @@
 //! The state of the mechanism: end sensors, motions in progress, and the situation for the guard.
 //!
 //! An actuator is at an end only while its sensors show that end and it does not move; otherwise it may be anywhere on
-//! its way, or on its whole stroke. On its way it has left the end where it began once the sensor there has been off
+//! its way, or on its whole stroke. It counts as having left the end where it began once the sensor there has been off
 //! for [`DEBOUNCE`]. A sensor value older than [`SENSOR_AGE`] counts as unknown.
 //!
-//! The mechanism detects a stroke that arrives late (it repeats a failed stroke away from rest once: back to rest, then
-//! out again), an actuator that leaves its end, both end sensors on at once, and the drive's alarm. A signal shorter
-//! than [`DEBOUNCE`] counts as a bounce.
+//! The mechanism detects a stroke that arrives late, an actuator that leaves its end, both end sensors on at once, and
+//! the drive's alarm. It repeats a late stroke away from rest once: back to rest, then out again. A signal shorter than
+//! [`DEBOUNCE`] counts as a bounce.
 
 use super::moves::{Move, Strokes};
 use super::trouble::Trouble;
@@ -39,7 +39,7 @@ struct Underway {
 }
 
 impl Underway {
-    /// Reads the sensors of the end where the motion began; a motion between other places has none.
+    /// Reads the sensors of the end where the motion began; without any, the actuator never counts as having left it.
     fn look_back(&mut self, now: RigTime, image: &Image) {
         let mut sensors = self.movement.other_end().iter();
         let is_off = |point: &DigitalIn| {
@@ -153,7 +153,7 @@ impl Mechanism {
             .all(|(point, state)| image.input(*point, now, SENSOR_AGE) == Some(*state))
     }
 
-    /// Returns true when a motion of the same actuator has been driven and has not arrived.
+    /// Returns true when a motion of the same actuator is under way, waits to be driven, or is repeated.
     pub fn is_moving(&self, movement: Move) -> bool {
         let same = |other: &Move| other.key() == movement.key();
         self.underway

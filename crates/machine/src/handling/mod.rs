@@ -4,8 +4,8 @@
 //! light barrier, the *beam*. A sensor value is valid for [`mechanism::SENSOR_AGE`]; a sensor without a valid value
 //! counts as unknown, and no state is guessed for it.
 //!
-//! A rig has a [`feeder`] or a [`batch`] of sockets; [`ledger`], [`serial`] numbers, [`trouble`] and events of parts are
-//! the same for both. What follows is the feeder; [`batch`] has a page of its own.
+//! A rig has a [`feeder`] or a [`batch`] of sockets; [`ledger`], [`serial`] numbers, [`trouble`] and events of parts
+//! are the same for both. The rest of this page describes the feeder; [`batch`] has its own page.
 //!
 //! Normal sequence: [`feed`] lets one part into the pocket and pushes it into the nest; [`nest`] holds and tests it
 //! and hands it to the fingers; [`sort`] carries it to its bin, releases it and waits for the beam. The three overlap;

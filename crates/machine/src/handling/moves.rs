@@ -161,7 +161,8 @@ impl Move {
         }
     }
 
-    /// Returns the sensors of the other end; when these and those of the motion's own end are on, a sensor is broken.
+    /// Returns the sensors of the other end, if it has any; when they and those of the own end are on, a sensor is
+    /// broken.
     pub fn other_end(self) -> &'static [DigitalIn] {
         match self {
             Move::PusherExtend => &[DigitalIn::PusherRetracted],

@@ -105,7 +105,7 @@ pub enum Source {
 /// Reason why a scan is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ScanRefused {
-    /// The lot takes no scans.
+    /// The lot takes no scans, or no scan waits for its part.
     NotScanned,
     /// The text is no serial number.
     Unreadable,

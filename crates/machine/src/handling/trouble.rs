@@ -23,7 +23,7 @@ pub enum Trouble {
     AxisDrive,
     /// No part came into the pocket although parts wait in the track.
     NoPart,
-    /// No part came, and none waits.
+    /// No part came, and the sensor of the track shows none.
     MagazineEmpty,
     /// The pusher is at a nest whose sensor shows no part.
     NestEmpty,

@@ -71,8 +71,8 @@ pub enum Act {
     Ramp(Vec<(AnalogOutput, Volt)>),
     /// Reads points.
     Read(Read),
-    /// Runs programs on SCPI instruments: those of different instruments at the same time, those of one instrument in their
-    /// order.
+    /// Runs programs on SCPI instruments: those of different instruments at the same time, those of one instrument in
+    /// their order.
     Query(Vec<Query>),
     /// Converts the waveforms that the stage has read so far into [`super::readings::Readings::converted`].
     Convert(Conversion),

@@ -36,8 +36,8 @@ pub struct Delivered {
 }
 
 impl Delivered {
-    /// Makes values of the replies to a program. A block and the list of numbers before it, its preamble, are a waveform;
-    /// a text that is no number gives no value.
+    /// Makes values of the replies to a program. A list of numbers (the preamble) followed by a block is a waveform; a
+    /// text that is no number gives no value.
     ///
     /// # Errors
     /// Fails when a block has no preamble, or one that does not fit the dialect.

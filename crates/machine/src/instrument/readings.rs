@@ -82,7 +82,7 @@ impl Readings {
     /// Stores the values of a finished job. `at`: the current time, then the time of the job's last reply.
     ///
     /// # Errors
-    /// Fails with the name of a point that has no value.
+    /// Fails with the name of a point or word that has no value.
     pub(super) fn take(
         &mut self,
         read: &Read,

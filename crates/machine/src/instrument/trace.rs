@@ -1,10 +1,11 @@
 //! The trace of a test, sample by sample: the evidence kept for a rejected part.
 //!
-//! The trace holds analog samples and counts as read, numbers of instruments, the values commanded to sources and to the
-//! traced outputs of a kind, and words of inputs. A bit signal has one sample at each change and one at the last poll before it, so that
-//! polling for many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of the
-//! default recipe has some 150. Of a waveform the trace keeps least and greatest value in each of [`WAVE_PIECES`]
-//! pieces, beside those samples and at most [`MAX_WAVE_SAMPLES`] in a test; the record ends when the program has.
+//! The trace holds analog samples and counts as read, numbers of instruments, the values commanded to sources and to
+//! the traced outputs of a kind, and words of inputs. A bit signal has one sample at each change and one at the last
+//! poll before it, so that polling for many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`]
+//! samples; a test of the default recipe has some 150. Of a waveform the trace keeps the least and the greatest value
+//! in each of [`WAVE_PIECES`] pieces, at most [`MAX_WAVE_SAMPLES`] in a test in addition to the other samples; their
+//! times count back from the end of the program.
 
 use super::query::{Delivered, Instrument, Query, Waveform};
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};
@@ -122,7 +123,7 @@ impl Signal {
 pub struct TraceSample {
     /// The signal.
     pub signal: Signal,
-    /// Time of the request; for an output the time of its answer.
+    /// Time of the request of a sample or count; of an output, a word or a program that of the answer.
     pub at: RigTime,
     /// Value in the unit of the signal; NaN where the converter gave none (over range).
     pub value: f64,
@@ -132,7 +133,7 @@ pub struct TraceSample {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
     samples: Vec<TraceSample>,
-    /// Samples of waveforms among them.
+    /// Number of samples that come from waveforms.
     of_waves: usize,
 }
 
@@ -186,7 +187,7 @@ impl Trace {
         self.add(Signal::input(quantity), sample.origin.at, value);
     }
 
-    /// Adds the numbers of a program, or its waveform; a list of more than [`MAX_NUMBERS`], such as a ramp, leaves none.
+    /// Adds a program's waveform, and its numbers if they are at most [`MAX_NUMBERS`] (a ramp has more).
     pub(super) fn delivered(&mut self, query: &Query, delivered: &Delivered, at: RigTime) {
         let number = query.arguments.iter().find(|(name, _)| *name == "channel");
         let signal = number.and_then(|it| Signal::channel(query.instrument, it.1 as usize));

@@ -78,8 +78,8 @@ impl Wiring {
         self.bins().contains(&bin)
     }
 
-    /// Returns the inputs that the scan reads besides those of the machine: beams of bins; or contacts of sockets and the
-    /// inputs of fixtures, because the test of a batch watches its safety chain all the time.
+    /// Returns the inputs that the scan reads besides those of the machine: beams of bins; with a rack contacts of
+    /// sockets, and inputs of fixtures, because the test of a batch watches its safety chain all the time.
     pub fn scanned_inputs(&self) -> Vec<DigitalInput> {
         match &self.handling {
             Handling::Feeder(table) => table.axis.bins().map(|bin| table.axis.beam(bin)).collect(),

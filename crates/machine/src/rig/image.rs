@@ -1,8 +1,8 @@
 //! The process image: the last values of each module, with their times.
 //!
-//! The image contains no guesses. A point that was never read, or was read too long ago, has no value; after
-//! [`Image::forget`] (module silent or reset) a point has none until the next read. The time of a value is that of its
-//! request, so that no age is understated.
+//! The image contains no guesses. A point that was never read, or was read too long ago, has no value; after a reset of
+//! its module ([`Image::forget`]) a point has none until the next read. The time of a value is that of its request, so
+//! that no age is understated.
 
 use super::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Thermometer};
 use super::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
@@ -223,7 +223,7 @@ impl Image {
         }
     }
 
-    /// Drops all values of a module that is silent or was reset.
+    /// Drops all values of a module that was reset.
     pub fn forget(&mut self, module: ModuleId) {
         self.words[module.0] = None;
         self.levels[module.0] = None;

@@ -1,11 +1,12 @@
 //! The points of the rig: everything that it can sense, switch, set, measure or count.
 //!
 //! A point is a name of the process ("pusher retracted"), never a terminal; `config/rig.toml` wires it to a module and
-//! channel. Three sources name points:
+//! channel. Four sources name points:
 //! - the machine: safety, actuators, buttons, axis, lamps, door. Closed enums; a rig wires those that its handling
 //!   needs ([`DigitalIn::OF_FEEDER`], [`DigitalIn::OF_RACK`]) and no other.
 //! - the kinds of device under test: each declares a [`Fixture`]. A rig may lack them.
 //! - the bins: each names the digital input of its beam, the light barrier in its chute.
+//! - the sockets of a rack: each has a digital input, its contact.
 //!
 //! The wiring resolves a name to a handle ([`DigitalInput`] and its like): an index into its table.
 
@@ -166,7 +167,7 @@ macro_rules! handles {
 }
 
 handles! {
-    /// A wired digital input: of the machine, of a fixture, or the beam of a bin.
+    /// A wired digital input: of the machine or a fixture, the beam of a bin, or the contact of a socket.
     DigitalInput,
     /// A wired digital output, of the machine or of a fixture.
     DigitalOutput,
@@ -174,7 +175,7 @@ handles! {
     AnalogInput,
     /// A wired analog output.
     AnalogOutput,
-    /// A wired platinum resistance thermometer.
+    /// A wired thermometer.
     Thermometer,
     /// A wired gated counter.
     GatedCounter,

@@ -53,7 +53,7 @@ impl Module {
 
 impl Wiring {
     /// Returns the command that refreshes a module's values in the image: it reads all inputs or outputs, all readings
-    /// (or the one enabled channel), the present level, or counter 0.
+    /// (or the one enabled channel), the present level (of the first output), or counter 0.
     pub fn poll(&self, module: ModuleId) -> Command {
         let module = self.module(module);
         if let Some(form) = module.input_form() {

@@ -7,7 +7,7 @@ use super::point::{DigitalInput, Thermometer};
 use super::settings::{RackSettings, RigSettings, SocketSettings};
 use units::Celsius;
 
-/// Name of the thermometer in the rack, which decides when the door is unlocked.
+/// Name of the thermometer in the rack; the door stays locked while the rack is hot.
 pub const THERMOMETER: &str = "rack_temperature";
 
 /// A socket of the rack.
@@ -30,7 +30,7 @@ pub struct Socket {
 pub struct Rack {
     sockets: Vec<Socket>,
     lists: Vec<Bin>,
-    /// Thermometer that decides when the door may be unlocked.
+    /// Thermometer in the rack; the door stays locked while the rack is hot.
     pub thermometer: Thermometer,
     /// Temperature of the rack below which the door may be unlocked.
     pub unlock_below: Celsius,

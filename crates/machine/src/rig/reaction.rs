@@ -34,7 +34,7 @@ const LONGEST_DIGITAL_REPLY: u64 = 12;
 const TURNAROUND: u64 = 2;
 /// Characters of the longest reply of any module: eight readings of seven characters, with lead, checksum and CR.
 const LONGEST_ANALOG_REPLY: u64 = 60;
-/// Lateness of the computer from which it explains a missing reply, as a share of the digital allowance.
+/// Least lateness of the computer that explains a missing reply, as a share of the digital allowance.
 const EXPLAINS: f64 = 0.5;
 
 impl Wiring {
@@ -68,8 +68,8 @@ impl Wiring {
         Span(accepted.0.saturating_sub(self.longest_reaction().0))
     }
 
-    /// Returns the lateness of the computer from which it explains a missing reply: half of the time that a digital
-    /// module may take.
+    /// Returns the least lateness of the computer that explains a missing reply: half of the time that a digital module
+    /// may take.
     pub fn explaining_lateness(&self) -> Span {
         Span::seconds(EXPLAINS * self.bus.digital_allowance_ms / 1000.0)
     }

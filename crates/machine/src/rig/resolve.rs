@@ -1,10 +1,10 @@
 //! Resolves the settings of `config/rig.toml` to a checked [`Wiring`].
 //!
-//! The resolution checks whatever involves more than one key: every point is one of the machine, one that a kind of
-//! device declares, or the beam of a bin; it names an existing module, a channel of it, and terminals of the right
-//! kind; no two points share a terminal and no two modules an address on one line; a module has exactly the settings of
-//! its model; the axis has one point for each place; the ranges of the supply have codes of their own; an
-//! instrument has a profile and a link of its own; the emergency stop acts in time.
+//! The resolution checks whatever involves more than one key. Every point is one of the machine, one that a kind of
+//! device declares, the beam of a bin, or the contact of a socket. It names an existing module, a channel of it, and
+//! terminals of the right kind. No two points share a terminal, and no two modules an address on one line. A module has
+//! exactly the settings of its model. The axis has one point for each place. The ranges of the supply have codes of
+//! their own. An instrument has a profile and a link of its own. The emergency stop acts in time.
 
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
@@ -27,8 +27,8 @@ use dcon::Channel;
 use std::collections::BTreeMap;
 
 impl Wiring {
-    /// Resolves all names of a rig without instruments, checks the whole wiring and returns the first fault. `fixtures`:
-    /// points that the kinds of device declare; the rig may lack any of them.
+    /// Resolves all names of a rig without instruments and checks the whole wiring; fails with the first fault.
+    /// `fixtures`: points that the kinds of device declare; the rig may lack any of them.
     pub fn resolve(settings: &RigSettings, fixtures: &[Fixture]) -> Result<Self, Fault> {
         Self::resolve_with(settings, fixtures, &Profiles::new())
     }

@@ -1,6 +1,6 @@
 //! The text of `config/rig.toml` as types, before names are resolved to modules and channels.
 //!
-//! [`super::wiring::Wiring::resolve`] turns it into the wiring; no other code needs it.
+//! [`super::wiring::Wiring::resolve`] turns these types into the wiring; no other code needs them.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;

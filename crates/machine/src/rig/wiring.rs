@@ -297,8 +297,8 @@ impl Wiring {
         named(self.counter.iter().map(|it| it.0), name).map(GatedCounter::at)
     }
 
-    /// Yields every wired digital input with its name, in the order in which pages show them: fixtures, machine, beams or
-    /// sockets.
+    /// Yields every wired digital input with its name, in the order in which pages show them: fixtures, machine, beams
+    /// or sockets.
     pub fn digital_inputs(&self) -> impl Iterator<Item = (&str, DigitalInput)> {
         let (machine, all) = (DigitalIn::COUNT, self.digital_in.len());
         (machine..self.before_beams)

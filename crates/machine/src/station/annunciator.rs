@@ -10,8 +10,8 @@
 //! An acknowledged alarm without cause leaves the list. Alarms of one code share a line if the argument that
 //! distinguishes them (for example the place of a lost part) is the same. A listed alarm whose cause returns raises its
 //! count; while the cause lasts, only the alarms of [`PER_PART`] raise theirs. So the counts of the list equal the
-//! occurrences in the history. The first active alarm is the *first-out*, and remains so until no alarm is active.
-//! Acknowledging resets nothing.
+//! occurrences in the history. An alarm raised while no other is active is the *first-out*; it remains so while it is
+//! listed, unless its cause returns during another alarm. Acknowledging resets nothing.
 
 use super::catalogue::{ClearedBy, Entry, PER_PART, Reaction};
 use super::trouble::Alarm;
@@ -40,7 +40,7 @@ pub struct ListedAlarm {
     pub raised: RigTime,
     /// Number of occurrences.
     pub count: u32,
-    /// True when no other alarm was active before it.
+    /// True when no other alarm was active when its cause last appeared.
     pub first_out: bool,
     /// End of the time for which the alarm is shelved; `None` while it is not shelved.
     pub shelved_until: Option<RigTime>,

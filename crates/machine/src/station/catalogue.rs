@@ -150,7 +150,7 @@ codes! {
     ThermometerJump = "thermometer_jump", Hold, Operator;
     /// The two thermometers of the air disagree.
     ThermometersDiffer = "thermometers_differ", Hold, Operator;
-    /// A thermometer stands still under power.
+    /// The reading of a thermometer does not change although the heater has power.
     ThermometerStuck = "thermometer_stuck", Hold, Operator;
     /// The air does not warm or cool as its power demands.
     EnergyBalance = "energy_balance", Hold, Operator;
@@ -164,7 +164,7 @@ codes! {
     RampTooFast = "ramp_too_fast", Hold, Operator;
     /// The air does not follow a falling set point.
     CoolingTooSlow = "cooling_too_slow", Hold, Operator;
-    /// The answer of the air to its power has no usable figures.
+    /// The identification finds no usable response of the air to the heater.
     HeatingNotIdentified = "heating_not_identified", Hold, Operator;
     /// The limiter on the heater has tripped.
     LimiterTripped = "limiter_tripped", Hold, Operator;

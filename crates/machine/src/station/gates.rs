@@ -8,8 +8,8 @@
 //!   certificate. An interrupted check begins again.
 //! - *Calibration*: a calibration that expires during a lot stops the lot; the next start makes a new one.
 //! - *Reject-rate limit*: too many failed parts hold the line, once.
-//! - *Wear*: a counter at its limit raises an alarm, once, and the line continues; the mean resistance of the probe
-//!   contact does the same.
+//! - *Wear*: a counter at its limit raises an alarm, once, and the line continues; so does the mean resistance of the
+//!   probe contact, once until it has been below its limit again.
 
 use super::Station;
 use super::catalogue::AlarmCode;
@@ -35,7 +35,7 @@ const MIN_JUDGED: u64 = 20;
 pub struct LotSettings {
     /// Number of parts at the beginning of a run that get confirmation measurements.
     pub first_article_parts: u64,
-    /// Greatest share of failed parts, % of the size of the lot; without it the gate does not apply.
+    /// Greatest share of failed parts, % of the parts ordered, else of those judged; `None` for no limit.
     #[serde(rename = "discard_limit_pct")]
     pub reject_rate_limit_pct: Option<f64>,
     /// When the machine checks a reference part.
@@ -253,7 +253,7 @@ impl Station {
         (self.lot.gates.fouled && !raised).then(|| Alarm::probe_contact(mean, limit_ohm))
     }
 
-    /// Returns the alarms of the counters that have reached their limit, each once.
+    /// Returns the alarms of the probe contact and of the counters that have reached their limits, each once.
     pub(super) fn worn(&mut self) -> Vec<Alarm> {
         let uses = self.plan.worn.with(self.uses());
         let limits = &self.plan.lot.wear;

@@ -2,7 +2,7 @@
 //!
 //! | light | when |
 //! |---|---|
-//! | green | the line feeds or finishes parts |
+//! | green | the line homes, calibrates, feeds or finishes parts |
 //! | yellow | the line waits or comes to rest: idle, held, suspended, complete |
 //! | red | aborted, or an unacknowledged alarm with a reaction |
 //! | buzzer | for [`CALL`] after the red light has come on |

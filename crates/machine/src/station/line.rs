@@ -1,5 +1,5 @@
-//! The line: a feeder, or the batch of a rack, with the part ledger. The station asks the line without knowing which it
-//! has, except for questions that only a feeder can answer: motions, beams, reference parts in the nest.
+//! The line: a feeder, or the batch of a rack, with the part ledger. The station uses the line without knowing which of
+//! the two it has, except for motions, beams and reference parts in the nest, which only a feeder has.
 
 use super::turn::{Inputs, TurnOutput};
 use crate::dut::Device;

@@ -15,7 +15,7 @@
 //!
 //! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists the alarm until
 //! its cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part that was
-//! inside is void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
+//! inside is void, "interrupted". A stale sensor raises an alarm; the station never guesses what it would show.
 //!
 //! A run ends with its lot, or when a person leaves the lot for another one. An unattended run ([`Plan::attended`] is
 //! false) also ends with an alarm that needs a person. The station resets the machine and starts its lot by itself;
@@ -134,7 +134,7 @@ struct LotControl {
     reference_left: VecDeque<String>,
     /// Number of reference parts that this run has planned so far.
     reference_planned: u64,
-    /// True once calibration and reference parts are complete.
+    /// True once calibration and reference parts are complete and the prompts before the first part are answered.
     began: bool,
 }
 

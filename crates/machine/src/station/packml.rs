@@ -22,7 +22,7 @@ named! {
         Starting = "Starting",
         /// Feeds, tests and sorts parts.
         Execute = "Execute",
-        /// Finishes the parts inside after the count is reached.
+        /// Finishes the parts inside at the end of the lot.
         Completing = "Completing",
         /// The lot is done, outputs are safe.
         Complete = "Complete",

@@ -12,7 +12,7 @@
 //! pressed, stop wins, then reset. A button down for [`HELD`] counts as stuck (`button_stuck`), which stops nothing. An
 //! input without a sample is ignored.
 //!
-//! Times are those of the samples, so that one sample, however old it grows, never counts as settled.
+//! The debounce uses the times of the samples, so that one sample, however old it grows, never counts as settled.
 
 use super::packml::{Command, State};
 use super::trouble::Alarm;

@@ -100,8 +100,8 @@ impl Station {
         self.lot.reference_left.is_empty() && self.device.is_calibrated()
     }
 
-    /// Returns true when the prompt before the first part still has no answer and is due as soon as the last reference
-    /// part has left.
+    /// Returns true when calibration and reference parts are complete, and a prompt before the first part has no
+    /// answer.
     pub(super) fn is_prompt_due(&self) -> bool {
         self.is_calibration_over() && self.prompts.is_due(FIRST_PART)
     }

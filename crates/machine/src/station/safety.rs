@@ -310,7 +310,8 @@ impl Station {
         self.line.cut_off(now);
     }
 
-    /// Interrupts the parts in nest and gripper, so that they go to retest; the row of a judged part records this.
+    /// Interrupts the parts in nest, gripper and untested sockets; they go to retest, and the row of a judged part says
+    /// so.
     fn interrupt(&mut self, why: &str, now: RigTime, output: &mut TurnOutput) {
         let parts = &mut output.record.parts;
         for part in self.line.ledger.held_mut() {

@@ -40,8 +40,8 @@ pub struct Inputs<'a> {
     pub orders: Vec<Order>,
     /// True when every output has confirmed its command.
     pub settled: bool,
-    /// True in the one turn after a verification that [`Commands::verify`] requested has succeeded; one that failed gives
-    /// an alarm instead.
+    /// True in the one turn after a verification that [`Commands::verify`] requested has succeeded; one that failed
+    /// gives an alarm instead.
     pub verified: bool,
 }
 

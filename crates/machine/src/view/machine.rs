@@ -20,7 +20,7 @@ pub struct Machine {
     pub actuators: Vec<ActuatorView>,
     /// Parts by place: `pocket`, `nest`, `gripper`, `falling`, on a rack `socket_1` and so on; empty places are absent.
     pub places: BTreeMap<String, Token>,
-    /// Names of the bins, in the order of the line.
+    /// Names of the bins in the order of the line, or of the lists by which a rack is unloaded.
     pub bins: Vec<String>,
     /// Digital inputs by name; null when unread or stale.
     pub inputs: BTreeMap<String, Option<bool>>,
@@ -32,7 +32,7 @@ pub struct Machine {
     pub jogs: Vec<MotionView>,
     /// The last motion that the guard refused; null once another motion begins.
     pub refused: Option<MotionView>,
-    /// Wall time spent in each phase of the cycle since the program started, seconds.
+    /// Wall time spent in each phase of the cycle but `record` since the program started, seconds.
     pub phases_s: BTreeMap<String, f64>,
     /// Counts of strokes, touches and bounces since the program started, by name.
     pub wear: BTreeMap<String, u64>,

@@ -14,7 +14,8 @@ pub struct Mimic {
 pub struct MimicBody {
     /// Id in `scene.toml`; `part_nest` and the like for parts.
     pub id: String,
-    /// Actuators that carry it, by name, each with the body's displacement in mm (x, y, z) per millimetre of stroke.
+    /// Actuators that carry the body, by name, each with the body's displacement in mm (x, y, z) per millimetre of
+    /// stroke.
     pub rides: Vec<(String, [f64; 3])>,
     /// Silhouettes from above, x and y in mm.
     pub above: Vec<Vec<[f64; 2]>>,

@@ -11,8 +11,8 @@ pub(super) const VERTICAL: f64 = 8.0;
 /// Number of codes of the converter.
 pub(super) const CODES: f64 = 4096.0;
 
-/// Limits of error: the gain of a channel, and what one of its ranges adds to it, as fractions; offset and bend of the
-/// curve, as fractions of the range; the last is the standard deviation of the noise.
+/// Limits of error. The gain of a channel, and what one of its ranges adds to it, are fractions; offset, bend of the
+/// curve and noise (standard deviation) are fractions of the range.
 const GAIN: f64 = 2e-2;
 const GAIN_OF_RANGE: f64 = 1e-3;
 const OFFSET: f64 = 1e-2;
@@ -112,7 +112,7 @@ impl FrontEnd {
     }
 }
 
-/// Returns the number of the attenuator's step, of which there are three in a decade, for a scale in volts per division.
+/// Returns the step of the attenuator, three steps to a decade, for a scale in volts per division.
 fn attenuator(scale_v: f64) -> i32 {
     (3.0 * scale_v.log10()).floor() as i32
 }

@@ -43,7 +43,7 @@ fn a_sine_goes_on_when_its_voltage_changes() {
     let bench = &mut *shared.lock();
     bench.ask(0, ":PHAS:OFF 90;:VOLT:AC 230;:FREQ 50;:OUTP ON");
     bench.advance(20_000_000);
-    // Beside the message queue, so that no time passes.
+    // Reads the phase beside the message queue, so that no time passes.
     let before = bench.circuit.line_deg();
     bench.ask(0, ":VOLT:AC 115");
     let cycles = (bench.now_us - 20_000_000) as f64 * 50e-6;

@@ -372,8 +372,8 @@ fn a_dc_relay_conforms_at_its_true_thresholds() {
     assert!((volts / truth.on_ohm - 1.0).abs() < 0.02, "{volts}");
 }
 
-/// Lets a host come, work and leave within two seconds; returns whether the port opened, what left it after each message,
-/// and the errors.
+/// Lets a host come, work and leave within two seconds; returns whether the port opened, what left it after each
+/// message, and the errors.
 fn visit(shared: &SharedBench) -> (bool, Vec<Vec<Out>>, Vec<Out>) {
     let opened = shared.open(0, 0);
     let mut heard = Vec::new();
@@ -400,7 +400,7 @@ fn visit(shared: &SharedBench) -> (bool, Vec<Vec<Out>>, Vec<Out>) {
 fn every_fault_strikes_and_the_port_recovers() {
     const RIGOL: &str = "[[instrument]]\nname = \"dig\"\nmodel = \"digitizer-rigol\"\ntcp = 0\n";
     let usual = visit(&bench(RIGOL));
-    // They strike at an adapter, a measured value, the next connection.
+    // These faults strike at an adapter, at a measured value, or at the next connection.
     let elsewhere = ["address_changed", "over_range", "not_a_number", "half_kept"];
     for fault in crate::fault::instrument::list() {
         let value = fault

@@ -2,7 +2,7 @@
 //!
 //! This check shares nothing with the controller's guard: other code, other library, no margins. Two bodies crash
 //! when they press into each other deeper than their pair permits; a pair that the scene omits must not touch at
-//! all. A pair that lists actuators may touch only through these.
+//! all. A pair that lists actuators may press deeper only through these.
 //!
 //! Between two events of the mechanism every motion is known. [`Bodies::watch`] checks such an interval for the pairs
 //! that move relative to each other and whose swept boxes meet, in steps of [`STEP_MM`] of their relative travel.

@@ -118,7 +118,7 @@ impl Relay {
         relay
     }
 
-    /// Returns the true values, with the thresholds of the present operation.
+    /// Returns the true values, with the thresholds of the fitted model.
     pub fn values(&self) -> &RelayValues {
         &self.drawn
     }

@@ -150,8 +150,8 @@ impl Motion {
             .resting_flux_rate(self.solver.t_s, s, &self.drive)
     }
 
-    /// Integrates the flux alone, to `until_s` or until the armature is about to leave its stop; it does not take a
-    /// step at whose end the force on the stop would be too small.
+    /// Integrates the flux alone, to `until_s` or until the armature is about to leave its stop; refuses a step that
+    /// would end with too small a force on the stop.
     fn hold(&mut self, until_s: f64) {
         self.press(self.solver.state);
         while self.solver.t_s < until_s {

@@ -83,10 +83,11 @@ pub struct Overshoot {
 const FIRST_PARTS: u32 = 20;
 
 impl Overshoot {
-    /// Takes over the model taught by all parts, or the model of the lot once it has learned from [`FIRST_PARTS`].
+    /// Returns this overshoot with the model taught by all parts, or with that of the lot once [`FIRST_PARTS`] have
+    /// taught it.
     ///
-    /// The thresholds of reference parts lie too far apart for a linear model: theirs places ramps but gives no
-    /// results.
+    /// The thresholds of reference parts lie too far apart for a linear model: one taught by these places ramps but
+    /// gives no results.
     pub fn taught(self, by_all: OvershootModel, by_lot: OvershootModel) -> Self {
         let judges = by_lot.parts() >= FIRST_PARTS;
         let coarse = if judges { by_lot } else { by_all };

@@ -38,7 +38,7 @@ impl Closure {
         })
     }
 
-    /// Returns the standard uncertainty of the drop, volts, from that of one reading, `reading_v`. The zero has the same.
+    /// Returns the standard uncertainty of the drop, and of the zero, volts, from that of one reading, `reading_v`.
     pub fn u_v(&self, reading_v: f64) -> f64 {
         reading_v / (self.readings as f64).sqrt()
     }

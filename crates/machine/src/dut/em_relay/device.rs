@@ -1,7 +1,7 @@
 //! Relay recipe on a rig, with the data that the parts of a lot share.
 //!
-//! Holds recipe, calibration and what it learns: the overshoot of the ramps from reference parts, the interval of the
-//! next fine ramp from good parts of the lot, the probe contact at the coil from every part.
+//! The device learns the overshoot of the ramps from reference parts, the interval of the next fine ramp from good
+//! parts of the lot, the probe contact at the coil from every part.
 
 use super::calibration::{Calibration, Overshoots, Temperature};
 use super::feasible::nominal_v_per_s;
@@ -113,7 +113,7 @@ impl Device {
         self.promises.apply(&mut self.context);
     }
 
-    /// Watches the promised temperature of parts on the reference parts, and returns what they show of it.
+    /// Tests the promised temperature of parts on the reference parts, and returns the one that both give together.
     fn temperature(&mut self) -> Temperature {
         let (run, accuracy) = (&self.reference_parts, &self.context.accuracy);
         let residuals = run.temperatures(&self.certificates, accuracy);

@@ -56,7 +56,7 @@ struct Reach {
 /// Finds the bins, the points and the supply range that the recipe uses.
 ///
 /// # Errors
-/// Fails with the first of them that the rig does not have.
+/// Fails with the first bin, point or range that the rig does not have.
 fn reach(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Result<Reach, Fault> {
     let points = Points::resolve(rig.wiring);
     let demand = demand(recipe, limits, rig.accuracy);

@@ -30,8 +30,8 @@ const GUESS_SD_V: f64 = 0.05;
 const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
 const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
-/// Largest residual that the model learns from, in standard uncertainties; it clips a larger one to this. One outlier
-/// thus does not bend the line, whereas residuals that persist widen the uncertainty until the line bends.
+/// Greatest residual, in standard uncertainties; the model clips a larger one to this. One outlier thus does not bend
+/// the line, whereas residuals that persist widen the uncertainty until the line bends.
 const OUTLIER: f64 = 3.0;
 /// Greatest squared distance of a similar part from the parts learned, in squared standard deviations: one in two
 /// thousand lies further away. `WIDER` raises it after few parts (Hotelling's T2 of five variates, accurate to a tenth
@@ -162,8 +162,8 @@ impl OvershootModel {
         self.parts += 1;
     }
 
-    /// Returns the expected overshoot of a part. For a part with a missing result, returns that of the first part, with
-    /// `alike` false.
+    /// Returns the expected overshoot of a part. For a part with a missing result, returns the overshoot expected of
+    /// the first part, with `alike` false.
     pub fn of(&self, shown: &CoarseResults) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
@@ -193,8 +193,8 @@ impl OvershootModel {
         (0..TERMS).map(of_term).sum()
     }
 
-    /// Returns the squared distance from the parts learned, as a multiple of the limit for similar parts; `None` after
-    /// too few parts.
+    /// Returns the squared distance of a part from the parts learned, as a multiple of the limit for similar parts;
+    /// `None` after too few parts.
     fn beyond(&self, spread: f64) -> Option<f64> {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;

@@ -1,9 +1,9 @@
 //! Contact resistance of the probes at the coil pins, from the voltage drop between supply and pins.
 //!
 //! The sense wires keep this resistance out of the coil resistance, but thresholds are volts of the supply: each ohm in
-//! series raises them in proportion, by 20 mV on 8 V at 400 ohm. A test treats the change of this resistance since the
-//! reference parts were measured as an uncertainty of a threshold and corrects nothing, since the pins of a part may
-//! differ from those before it. The Kelvin bits open only at 5 ohm per pin.
+//! series raises them in proportion, by 20 mV on 8 V at 400 ohm. It may have changed since the reference parts were
+//! measured: a test counts the change as an uncertainty of a threshold and corrects nothing, since its pins may differ
+//! from those of earlier parts. The Kelvin bits open only at 5 ohm per pin.
 //!
 //! The supply is calibrated on the reference resistor, without probes. The difference between command and pin voltage,
 //! divided by the current, is the resistance of both force contacts in series.

@@ -75,8 +75,8 @@ impl KindRecipe for RelayRecipe {
         made_up::made_up(self)
     }
 
-    /// Checks that pre-bias and expected thresholds are in ascending order below the nominal voltage, and that the
-    /// coarse ramp ends at a voltage that the coil withstands.
+    /// Checks that the expected operate threshold lies above pre-bias and expected release threshold and below the
+    /// nominal voltage, and that the coarse ramp ends at a voltage that the coil withstands.
     ///
     /// # Errors
     /// Fails with the first key that breaks this order or bound.

@@ -3,7 +3,7 @@
 //! The calibration runs with an empty nest and the probes up (drive and source need the probe-up chain). It finds gain
 //! and offset of the coil converter's inputs, ohms per ratio on each current channel, milliohms per volt of drop, gate
 //! delays, gain and offset of the three supply outputs, and the slope of the fine ramp against the host's clock. The
-//! slope of the coarse ramp stays nominal, because this ramp only places the fine one.
+//! slope of the coarse ramp stays nominal, because the overshoot contains its error.
 
 mod check;
 mod fault;
@@ -54,15 +54,15 @@ const SCANNED: [AnalogIn; 6] = [
 const SCANS: usize = 12;
 /// Number of scans along the fine ramp.
 const RAMP_SCANS: usize = 56;
-/// Time from one of these scans to the next, as a share of a round of conversions, however long the replies take. A
-/// reading is up to one round old; at this share the ages spread evenly over the ramp and do not tilt it, while scans
-/// at the pace of the rounds would drift through them.
+/// Time between two scans along the fine ramp, as a share of a round of conversions, however long the replies take. A
+/// reading is up to one round old. At this share the ages spread evenly over the ramp and do not bias its slope; in
+/// scans at the pace of the rounds the age would drift along the ramp.
 const RAMP_ROUND: f64 = 0.72;
 /// Longest time until the sources have fallen to zero and the relays of the range have switched.
 const SWITCHES: Span = Span::ms(4000);
 /// Number of drops read per polarity.
 const DROPS: usize = 8;
-/// Number of gate pulses: their sum is uncertain by one count, their mean by 1/25 of a count.
+/// Number of gate pulses; the standard uncertainty of one count is at most half a count, that of their mean 1/10.
 const PULSES: u32 = 25;
 
 /// Returns the inputs that [`acts`] scans; empty on a rig that lacks a point of the relay test.

@@ -189,7 +189,7 @@ impl ReferenceRun {
         Ok(())
     }
 
-    /// Returns the overshoots from all reference parts; fails with the part that is an outlier.
+    /// Returns the overshoots from all reference parts; fails with fewer than three, or with an outlier.
     pub fn overshoots(
         &self,
         parts: &[ReferencePart],
@@ -303,7 +303,7 @@ fn coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<Factor, Misfi
 /// part in 120 exceeds it.
 const CHECK_K: f64 = 3.0;
 
-/// Compares the results of a reference part with its certificate; fails with the result that disagrees.
+/// Compares the results of a reference part with its certificate; fails with the one that is missing or disagrees.
 pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let [operate, release, coil] = part.certified();
     for (parameter, certified) in [coil, operate, release] {

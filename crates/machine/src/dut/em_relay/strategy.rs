@@ -4,9 +4,9 @@
 //! |---|---|---|
 //! | `pulse` | one step to the limit less the guard band | a proof of the limit; without it ramps measure the threshold |
 //! | `staircase` | steps of 20 mV with a dwell, until the contact changes | a value from levels alone: slow, and decisive in a dispute |
-//! | `bisection` | seven trials from rest, each halving the interval | a value to a hundredth of the interval |
-//! | `ramp` | the coarse ramp with the gated counter; for operate the overshoot follows the part's operate time ([`super::overshoot`]) | a value with the scatter of the coarse overshoot |
-//! | `two_rates` | coarse and fine ramp; the law below eliminates the overshoot | a value without reference parts |
+//! | `bisection` | seven trials, each of which starts anew and halves the interval | a value to a hundredth of the interval |
+//! | `ramp` | the coarse ramp with the gated counter; the overshoot follows from other results of the part ([`super::overshoot`]) | a value with the scatter of the coarse overshoot |
+//! | `two_rates` | coarse and fine ramp, by the law below | a value; only L comes from reference parts |
 //! | `coarse_fine` | a coarse ramp that places a fine one | a value with the scatter of the fine overshoot |
 //! | `adaptive` | the coarse ramp; the fine one when the limit lies within the uncertainty | the decision of the fine ramp at the speed of the coarse one |
 //!
@@ -23,7 +23,7 @@ pub enum Strategy {
     Pulse,
     /// Steps of 20 mV with a dwell, until the contact changes.
     Staircase,
-    /// Trials from rest, each of which halves the interval.
+    /// Trials, each of which starts anew and halves the interval.
     Bisection,
     /// The coarse ramp alone.
     Ramp,

@@ -68,7 +68,7 @@ impl Supply {
     }
 
     /// Returns the act that steps the level so that the sum becomes `total`; the ramp outputs keep their voltage. If
-    /// these alone exceed `total`, the level becomes 0.
+    /// the ramp outputs alone exceed `total`, the level becomes 0.
     pub fn step_to(&mut self, total: Volt) -> Act {
         let wanted = total - self.coarse_at - self.fine_at;
         let command = Volt(self.level.command_for(wanted).0.max(0.0));

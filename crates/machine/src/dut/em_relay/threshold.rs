@@ -47,7 +47,7 @@ pub fn indicated(
 /// Uncertainty terms of a threshold, except that of the overshoot found on reference parts.
 #[derive(Debug, Clone, Copy)]
 pub struct RampUncertainty {
-    /// Slope of the fine ramp, volts per second.
+    /// Slope of the ramp, volts per second.
     pub slope_v_per_s: Factor,
     /// True when the overshoot already contains the error of the slope.
     pub slope_known: bool,

@@ -10,7 +10,7 @@ use units::{RigTime, Span};
 
 /// Time for which the door must stay closed before the rack counts as loaded.
 const SETTLED: Span = Span::ms(3_000);
-/// Time after which a rack is in trouble when it was loaded without a screen and no contact is closed.
+/// Time from the closing of the door after which a rack loaded without a screen must show a closed contact.
 const SILENT: Span = Span::ms(600_000);
 /// Name of the prompt.
 pub(super) const LOADED: &str = "batch_loaded";
@@ -23,12 +23,13 @@ pub(super) const ALL: &str = "all";
 #[derive(Debug, Default)]
 pub struct Loading {
     closed_since: Option<RigTime>,
-    /// True once the door was open in this phase: a rack whose door has not been open is not loaded.
+    /// True once the door was open in this phase. Without this, a rack counts as loaded only at a screen, by a closed
+    /// contact.
     was_open: bool,
     prompt: Option<Prompt>,
     /// Sockets with a closed contact for which the prompt was made.
     asked: Vec<u16>,
-    /// Answer of the person: true when every expected socket holds a part, false when only those seen do.
+    /// Answer of the person: true when every expected socket holds a part, false when only those in `asked` do.
     answer: Option<bool>,
 }
 
@@ -128,8 +129,8 @@ impl Loading {
 }
 
 /// Returns the sockets that a person should fill for this batch: those with a closed contact, then the first others
-/// until the lot lacks no part. Parts that show are all tested, even when the lot lacks fewer, so that nothing is
-/// heated without a row.
+/// until the lot lacks no part. Parts with a closed contact are all tested, even when the lot lacks fewer, so that
+/// nothing is heated without a row.
 fn expected(turn: &BatchTurn, rack: &Rack, seen: &[u16]) -> Vec<u16> {
     let lacking = turn.lacking.map_or(usize::MAX, |lacking| {
         usize::try_from(lacking).unwrap_or(usize::MAX)

@@ -1,4 +1,4 @@
-//! The batch: a person fills the sockets of a rack, all parts are tested together, the person unloads them by lists.
+//! The batch: a person fills the sockets of a rack, all parts are tested together, the person unloads one list per bin.
 //!
 //! ```text
 //! loading -> locking -> testing -> cooling -> unloading -> loading
@@ -9,13 +9,13 @@
 //!
 //! Normal sequence: in [`Phase::Loading`] the door is unlocked. The phase ends when the door stays closed; with a
 //! screen, the person must also answer the prompt. When the door is locked, the parts get their numbers; from then on
-//! they have rows. The kind of device tests them. The rack cools; its own temperature, not that of the air, which falls
-//! faster, decides when the door is unlocked. A list opens once the rows of all its parts are on the disk: the person
-//! takes out its parts and confirms it; without a screen, an opened door and open contacts confirm it. Loading begins
-//! again only when every contact is open, so that no old part passes for a new one.
+//! they have rows. The kind of device tests them. The rack cools; the door is unlocked when the rack itself is cool,
+//! not only the air, which cools faster. A list opens once the rows of all its parts are on the disk: the person takes
+//! out its parts and confirms it; without a screen, an opened door and open contacts confirm it. Loading begins again
+//! only when every contact is open, so that no old part passes for a new one.
 //!
 //! Troubles: the door does not lock, the rack has no temperature, it cools too slowly, the test takes too long or has
-//! met trouble of the rig, no part shows in a rack that was loaded without a screen.
+//! met trouble of the rig, no contact is closed in a rack that was loaded without a screen.
 //!
 //! After safe outputs or a restart: a rack without a reading counts as hot. [`Batch::home`] cools it, the door locked.
 //! Then parts of an interrupted batch leave by the list for retest, and parts of an earlier run without a list.
@@ -272,7 +272,7 @@ impl Batch {
         }
     }
 
-    /// Returns true when no part is in the rack.
+    /// Returns true while a person loads the rack: no part in it has a number yet.
     pub fn is_empty(&self) -> bool {
         matches!(self.phase, Phase::Loading(_))
     }
@@ -322,7 +322,7 @@ impl Batch {
         }
     }
 
-    /// Performs a turn of homing; returns true when the rack is cool and the parts of an interrupted batch have left it.
+    /// Performs a turn of homing; returns true when the rack is cool and holds no part of an interrupted batch.
     pub fn home(&mut self, turn: &mut BatchTurn) -> bool {
         turn.begins = false;
         self.step(turn);

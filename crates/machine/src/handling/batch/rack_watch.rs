@@ -1,7 +1,7 @@
 //! Watches the temperature of the rack while no test runs, and carries out the acts that cool it.
 //!
-//! A rack that may be hot becomes cool by its own thermometer and one in the air around it; from then on its own decides,
-//! because walls warm the still air of an open door.
+//! A rack that may be hot becomes cool when its own thermometer and one in the air around it say so. From then on its
+//! own thermometer alone decides, because walls warm the still air of an open door.
 
 use super::BatchTurn;
 use crate::handling::trouble::Trouble;
@@ -27,9 +27,9 @@ enum Heat {
     Unknown,
     /// Homing began at this time and waits for the first reading.
     Awaited(RigTime),
-    /// The last reading was below the limit, and no heat was on since.
+    /// Cool at the last reading; see [`RackWatch::is_cool`].
     Cool,
-    /// The last usable reading was at the limit or above it.
+    /// Not cool at the last usable reading.
     Hot,
 }
 
@@ -164,8 +164,8 @@ impl RackWatch {
         }
     }
 
-    /// Returns true when a thermometer in the air has a fresh reading and none is at or above the limit, or when the rig
-    /// has none.
+    /// Returns true when a thermometer in the air has a fresh reading and none reads the limit or more, or when the rig
+    /// has no thermometer there.
     fn is_air_cool(&self, turn: &BatchTurn) -> bool {
         let all = turn.device.air_thermometers();
         let readings = all.iter().filter_map(|it| reading(turn, *it));
@@ -176,7 +176,8 @@ impl RackWatch {
         all.is_empty() || !fresh.is_empty() && fresh.iter().all(|it| it.0 < self.unlock_below.0)
     }
 
-    /// Returns true when the last reading is fresh and below the limit.
+    /// Returns true when the last reading is fresh and below the limit, and the air is cool. While the rack is cool,
+    /// the limit is higher by [`HYSTERESIS_K`], and the air does not matter.
     pub fn is_cool(&mut self, turn: &BatchTurn) -> bool {
         let Some((Celsius(value), at)) = reading(turn, self.thermometer) else {
             return false;

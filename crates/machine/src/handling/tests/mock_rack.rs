@@ -40,7 +40,7 @@ pub struct RackRig {
     pub lock_works: bool,
     pub cools: bool,
     pub is_thermometer_broken: bool,
-    /// Reading at which the thermometer in the rack stands still.
+    /// Reading at which the thermometer in the rack is stuck.
     pub stuck_c: Option<f64>,
     pub emergency_stop: bool,
     /// Number of coming output writes that fail.

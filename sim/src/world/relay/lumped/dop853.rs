@@ -197,10 +197,10 @@ pub fn step(
     }
 }
 
-/// Permitted error of a step: a fraction of the state and of its natural size.
+/// Permitted error of a step, relative to the sum of each state and its natural size.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
-    /// Fraction of the state.
+    /// Permitted error as a fraction of that sum.
     pub relative: f64,
 }
 

@@ -13,8 +13,7 @@ use units::{Ampere, Volt};
 
 /// Lowest voltage at the terminal of a current channel that a test can distinguish from no current.
 const LEAST_CURRENT_V: f64 = 0.3;
-/// Assumed difference of a good coil from its nominal resistance, as a share of the latter, where the recipe sets no
-/// limit.
+/// Assumed relative difference of a good coil from its nominal resistance, where the recipe sets no limit.
 const USUAL_SPREAD: f64 = 0.1;
 
 /// Returns the demand of a test on the supply. Voltage: the nominal voltage or the top of the coarse ramp, whichever is

@@ -97,8 +97,8 @@ pub(super) fn acts_off(
     stopped: bool,
 ) -> (Vec<Act>, BoardState) {
     // The cycle writes only values that change. After an early end these outputs first go off and then take `IDLE`, and
-    // the level below goes to zero, so that writes go out which a module with a tripped host watchdog ignores, and
-    // thereby shows its fault.
+    // the level below goes to zero, so that each change causes a write. A module with a tripped host watchdog ignores
+    // these writes and thereby reveals its fault.
     let mut acts = vec![set(&IDLE.map(|(output, on)| (output, on && !stopped)))];
     acts.extend(stopped.then(|| set(&IDLE)));
     let freed = match context.relay.test.suppression {
@@ -113,8 +113,8 @@ pub(super) fn acts_off(
         acts.extend(rest(context, &mut board.supply));
     }
     let within = freed + context.fresh(CHANNELS);
-    // A conversion from before the switch-off shows a driven coil. After a stage that did not end as planned it may come
-    // from before the drive, so the stage waits for one that began later.
+    // A conversion that began before the switch-off shows a driven coil. After a stage that did not end as planned, the
+    // last conversion may even have begun before the drive, so this stage waits for a newer one.
     acts.extend((!released).then_some(Act::ConvertSinceMark(within)));
     acts.push(Act::Below {
         channel: context.relay.test.coil_channels.current(),
@@ -125,8 +125,8 @@ pub(super) fn acts_off(
     (acts, board)
 }
 
-/// Sets the supply to the start level of the next part (pre-bias, both ramps down) and reads the restart flag of every
-/// module with outputs.
+/// Sets the supply to the start level of the next part (the pre-bias, with both ramps at 0) and reads the restart flag
+/// of every module with outputs.
 pub(super) fn rest(context: &Context, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));

@@ -21,7 +21,8 @@ use std::sync::Arc;
 use units::{Celsius, Ohm, Span, Volt};
 
 /// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. The delay
-/// behind it is the same in every supply range, so its volts are proportional to the rate of the ramp.
+/// that causes the overshoot is the same in every supply range, so the overshoot is proportional to the rate of the
+/// ramp.
 const ASSUMED_OPERATE: Volt = Volt(0.85);
 const ASSUMED_RELEASE: Volt = Volt(-1.05);
 
@@ -99,7 +100,7 @@ impl Context {
     }
 
     /// Returns the temperature of a part relative to the track, kelvin; before the reference parts are measured, the
-    /// one that `rig.toml` promises.
+    /// temperature that `rig.toml` promises.
     pub fn part_k(&self) -> Deviation {
         let found = self.calibration.temperature.map(|it| it.part_k);
         found.unwrap_or(Deviation::known(self.accuracy.part_minus_track_k))
@@ -131,8 +132,8 @@ impl Context {
         Celsius(self.relay.part.reference_temperature_c)
     }
 
-    /// Returns the strategy for a threshold. Reference parts, and the first parts of a lot under `adaptive`, get both
-    /// ramps, because the overshoot model learns from them.
+    /// Returns the strategy for a threshold: `coarse_fine` in a thorough test, before the overshoot is known, and under
+    /// `adaptive` until enough parts of the lot have taught the overshoot model; else that of the recipe.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
         let overshoot = self.overshoot(match parameter == Parameter::ReleaseVoltage {
             true => Direction::Falling,

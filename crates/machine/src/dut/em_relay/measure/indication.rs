@@ -36,8 +36,8 @@ pub(super) fn coarse_reading(
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = overshoot.coarse.of(&seen);
-    // The learned scatter includes the scatter of the operation on the fine ramp, which is subtracted, because this
-    // value comes from the coarse ramp alone.
+    // The learned scatter includes the scatter of the operation on the fine ramp. This value comes from the coarse ramp
+    // alone, so that scatter is subtracted.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let uncertainty = RampUncertainty {
@@ -64,8 +64,8 @@ pub(super) fn coarse_reading(
     predicted.alike.then_some(reading)
 }
 
-/// Returns the threshold from a fine ramp and the overshoot of reference parts, or from both ramps by the law of their
-/// rates.
+/// Returns the threshold from a fine ramp and the overshoot of reference parts; under `two_rates` from both ramps, by
+/// the law in `strategy.rs`.
 pub(super) fn fine_reading(
     context: &Context,
     (ramps, gate): (Ramp, Second),

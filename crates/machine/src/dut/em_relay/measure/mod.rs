@@ -7,8 +7,8 @@
 //! Conditioning runs when the recipe demands operations before the first measurement. Each release follows the
 //! operation before it, so that a part operates three times and not five. The times come first: they show a contact
 //! that does not move at nominal voltage, and operate time and coil resistance predict the overshoot of the ramps
-//! ([`crate::dut::em_relay::overshoot`]). After such a contact the test still measures the coil, which may be the
-//! cause.
+//! ([`crate::dut::em_relay::overshoot`]). After such a contact the test still measures the coil, because it may
+//! be the cause.
 //!
 //! A stage consists of acts and a conclusion; `state.rs` calls both. The acts build on the state of the board
 //! (`board.rs`) and return the state that they leave. The conclusion writes results into the record (`record.rs`) and
@@ -23,7 +23,7 @@
 //!
 //! A stage that finds an open coil or a contact that does not move records the finding, and the test goes straight to
 //! `off`. Confirmation measurements repeat results inside the guard band: the same stage `slow_repeats` times,
-//! averaged. A result that is still conditional then fails.
+//! averaged. A mean that is still inside it fails.
 
 mod board;
 mod coil;
@@ -101,7 +101,7 @@ pub struct Test {
     began: RigTime,
     /// Tests of this part so far, including this one.
     number: u8,
-    /// Selected supply range and the one that was read back, once they differ.
+    /// Selected supply range and the one that was read back; `None` while the two agree.
     range_mismatch: Option<RangeMismatch>,
 }
 

@@ -23,7 +23,7 @@ const LEFT: Volt = Volt(0.02);
 /// Least voltage that the level output contributes to the first step of the approach; the coarse output contributes at
 /// most the remainder.
 const ROOM: Volt = Volt(0.3);
-/// How far the coarse output may exceed its share of the first step before the stage lowers it.
+/// Largest excess of the coarse output over its share of the first step that the stage leaves in place.
 const CLOSE: Volt = Volt(0.05);
 
 pub(super) fn acts(

@@ -16,7 +16,7 @@ use units::{Celsius, Volt};
 // Voltages are those of a 12 V coil in the range of factor 1; see `scale`.
 
 /// Step of the level between ARM and ramp. The fine ramp alone would take 33 ms to move by
-/// [`WINDOW`](crate::dut::em_relay::threshold::WINDOW), which opens the window; this step leaves only 5 mV of it, for the
+/// [`WINDOW`](crate::dut::em_relay::threshold::WINDOW), which opens the window; this step leaves it only 5 mV, for the
 /// tolerance of the comparator. Flux and armature settle after the step.
 pub(super) const JUMP: Volt = Volt(0.045);
 /// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows the ramp with
@@ -36,8 +36,8 @@ const WIDEST_SD: Volt = Volt(0.02);
 const WIDEST: Volt = Volt(0.2);
 /// Standard uncertainty of the assumed overshoot of a fine ramp, volts.
 const FINE_GUESS_SD: Volt = Volt(0.020);
-/// Standard deviation of the difference between two operations, volts. `TWO_TEMPERATURES` is the one that a temperature
-/// difference of 0.25 K between reference parts causes, as a share of the threshold.
+/// Standard deviation of the difference between two operations, volts. `TWO_TEMPERATURES` is the standard deviation
+/// that a temperature difference of 0.25 K between reference parts causes, as a share of the threshold.
 const TWO_OPERATIONS: Volt = Volt(0.004);
 const TWO_TEMPERATURES: f64 = 0.001;
 /// Width of the next interval, as a multiple of that of the missed one.

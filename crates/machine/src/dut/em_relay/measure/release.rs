@@ -26,18 +26,18 @@ pub const SEAL: f64 = 0.95;
 const LAST_REFRESHES: f64 = 1.5;
 /// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
-/// Time for the seal's flux to decay to a few per cent before a fine ramp. The model of the coarse overshoot includes
+/// Time for the seal's flux to decay to a few percent before a fine ramp. The model of the coarse overshoot includes
 /// the flux that remains after [`SETTLES`].
 const FINE_SETTLES: Span = Span::ms(35);
 /// Time after the end of a ramp up to which a break still counts.
 const LATE: Span = Span::ms(12);
 
-/// Seals the armature, steps to the start of the falling ramp and arms the board. An operated armature is not released
-/// first; its seal lasts until the running ramp has ended.
+/// Seals the armature, steps to the start of the falling ramp and arms the board. Does not first release an operated
+/// armature, and seals it until the running ramp has ended.
 fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
-    // The source is off, so that the ramp breaks the contact without load; other stages have read its resistance.
+    // The source is off, so that the contact breaks without load; other stages have read its resistance.
     let falling = [
         (SourceOn, false),
         (SourceReverse, false),
@@ -78,8 +78,8 @@ fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardSt
     (acts, sealed)
 }
 
-/// Waits for flux and armature to settle after the step, reading the counters meanwhile. ARM falls, so that the next
-/// stage can raise it again.
+/// Reads the counters, takes ARM off so that the next stage can raise it again, and waits for flux and armature to
+/// settle after the step.
 fn settled(within: Span) -> [Act; 3] {
     [
         Act::Read(Read::Gates),

@@ -114,7 +114,7 @@ impl Stage {
         }
     }
 
-    /// Every stage once, with the first attempt and one direction.
+    /// Every stage but conditioning once, with the first attempt and one direction.
     pub const ALL: [Self; 11] = [
         Self::Kelvin,
         Self::NcContact,

@@ -209,7 +209,7 @@ pub(super) fn conclude_operate(
 }
 
 /// Concludes a timed operation in which NO did not make in time: the relay is late, or a contact does not move. For a
-/// contact that does not move, returns the coil stage: the test measures the coil first, which may be the cause.
+/// contact that does not move, returns the coil stage, because the coil may be the cause.
 fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
     let TestState { plan, record, .. } = state;
     plan.unmoved = match readings.boards.last() {

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A part of a lot whose overshoot of 0.85 V follows its times, and less so its threshold; every part differs.
+/// A part of a lot whose overshoot of 0.85 V follows its times, and its threshold less; every part differs.
 fn part(at: u32) -> (CoarseResults, Volt) {
     let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
     let (slow, holding, high) = (0.16 * turn(0.618), 0.15 * turn(0.382_7), 0.11 * turn(0.271));

@@ -8,8 +8,8 @@ use crate::dut::em_relay::points::AnalogIn;
 use crate::dut::em_relay::readings::{CoilScan, Readings};
 use units::Volt;
 
-/// Largest relative difference between the supply voltage and the coil voltage of the reference. A wrong range shows,
-/// because the next range has twice the voltage.
+/// Largest relative difference between the supply voltage and the coil voltage of the reference. It detects a wrong
+/// range, because the next range has twice the voltage.
 const SAME_SUPPLY: f64 = 0.1;
 
 /// Fails when the board is in another range than the one selected; the board has then driven nothing.

@@ -3,8 +3,8 @@
 //! The operate voltage shows the temperature of a coil most clearly: the 0.15 K of the shipped `rig.toml` change it by
 //! 4.6 mV, whereas certificate and operation are uncertain by 2.2 mV. Release voltage and coil resistance of the same
 //! part show the same temperature again, under more noise, so they add no degree of freedom. An error that all parts
-//! have in common disappears in the overshoot, but shows in the coil resistance: mean heating, thermometer, reference
-//! resistor.
+//! have in common (mean heating, thermometer, reference resistor) disappears in the overshoot, but shows in the coil
+//! resistance.
 
 use super::{ReferenceRun, Shift};
 use crate::dut::accuracy::AccuracySettings;

@@ -1,4 +1,4 @@
-//! Bisection: each trial halves the interval and starts from rest, so that it does not depend on the one before.
+//! Bisection: each trial halves the interval and starts anew, so that no trial depends on the one before.
 
 use super::{Next, Search};
 use units::{Span, Volt};

@@ -1,4 +1,4 @@
-//! Searches for a threshold by levels: steps, bisection, one pulse. They use no ramp, counter or overshoot.
+//! Searches for a threshold by levels (steps, bisection, one pulse), without ramp, counter or overshoot.
 //!
 //! A trial is a list of acts that ends with a reading of the contacts, and a conclusion: the threshold or the next
 //! level. The threshold lies between `untouched` and `changed`.
@@ -188,7 +188,7 @@ fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Opt
     (near.0.is_finite() && near.0 > 0.0).then_some((near, end))
 }
 
-/// Returns an interval that extends far to both sides of the lot's thresholds, but not below [`LOWEST`].
+/// Returns an interval that extends far to both sides of the lot's thresholds, for release down to [`LOWEST`].
 fn far(context: &Context, direction: Direction) -> (Volt, Volt) {
     let test = &context.relay.test;
     let (centre, sd) = test.expected(direction);

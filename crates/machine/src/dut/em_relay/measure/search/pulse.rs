@@ -8,7 +8,7 @@ use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::Budget;
 use units::{Celsius, Volt};
 
-/// Share of the level by which a single step operates a relay below its quasi-static threshold, because the armature
+/// How far below its quasi-static threshold a relay operates on a single step, as a share of the level: the armature
 /// swings beyond its equilibrium.
 const SWING_SHARE: f64 = 0.0035;
 

@@ -189,8 +189,8 @@ fn switching_waits_until_the_source_is_off() {
 
 #[test]
 fn timing_keeps_2_ms_from_a_live_source() {
-    // At least one transaction, 3 ms at the highest baud rate, lies between the writes that take the source off and
-    // drop the drive: source and selection have switched by then.
+    // At least one transaction, 3 ms at the highest baud rate, lies between the write that switches the source off and
+    // the one that switches the drive off: source and selection have switched by then.
     let (_, acts) = all_acts()
         .into_iter()
         .find(|(stage, _)| *stage == Stage::TimedRelease)
