@@ -32,7 +32,7 @@ pub enum Remedy {
 }
 
 impl Remedy {
-    /// All of them.
+    /// All remedies.
     pub const ALL: [Self; 11] = [
         Self::Network,
         Self::Password,
@@ -115,7 +115,7 @@ impl Remedy {
 }
 
 impl FleetError {
-    /// Returns what a person does about it.
+    /// Returns what a person does about this error.
     #[must_use]
     pub const fn remedy(&self) -> Remedy {
         match self {
@@ -139,7 +139,8 @@ impl FleetError {
     }
 }
 
-/// Returns true when the connection could not be made or broke, and false when both sides could not agree on it.
+/// Returns true when the connection could not be made or broke; false when the sides did not agree on password or
+/// encryption.
 fn is_broken(error: &tokio_postgres::Error) -> bool {
     let mut cause: Option<&dyn Error> = Some(error);
     while let Some(it) = cause {

@@ -28,7 +28,7 @@ const UNCERTAINTY: &str = "uncertainty ";
 /// One row of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportRow {
-    /// The part, still without lot and number; its time is 0 when the row has none.
+    /// The part, still without lot and number; its time is 0 when the row has no time.
     pub part: PartRecord,
     /// True when the row has a time.
     pub timed: bool,

@@ -53,7 +53,8 @@ pub fn check_rig(path: &Path, simulated: bool) -> Result<()> {
 impl Store {
     /// Marks the file as belonging to a real or to the simulated rig.
     ///
-    /// # Errors Fails when the file belongs to the other kind.
+    /// # Errors
+    /// Fails when the file belongs to the other kind.
     pub fn claim(&mut self, simulated: bool) -> Result<()> {
         claim(self.connection(), &self.path, simulated)
     }

@@ -36,6 +36,8 @@
 //! ```
 //!
 //! # Files
+//! *The paper* is the published method that the library improves: extruded boxes, and the direction that frees most first.
+//!
 //! | files | what they hold |
 //! |---|---|
 //! | `assembly`, `extent`, `thinned` | elements, their boxes, their bodies with the contact depth taken off |

@@ -89,7 +89,7 @@ fn normal(mesh: &Mesh, corners: &[usize; 3], outward: f64) -> Option<[f64; 3]> {
     (size > 0.0).then(|| n.map(|member| outward * member / size))
 }
 
-/// Returns a short shift that brings a corner inside each of its planes by the depth, as nearly as it can.
+/// Returns a short shift that brings a corner inside each of its planes by the depth, as nearly as possible.
 ///
 /// Projects onto one plane after the other; neighbouring planes of a hole with 24 sides are 15 degrees apart, which
 /// shrinks the rest by 7 % a round.

@@ -22,7 +22,7 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Returns the index of the class of a value; for a value outside all classes, that of the nearest one.
+    /// Returns the index of the class of a value, or of the nearest class for a value outside all classes.
     pub fn class(&self, value: f64) -> usize {
         let class = ((value - self.from) / self.width).floor().max(0.0) as usize;
         class.min(self.counts.len() - 1)

@@ -1,4 +1,5 @@
-//! Troubles of network, server and clock: one message each, with the database and what to do; the rows stay in the queue.
+//! Troubles of network, server and clock: each gives one message with database and remedy, and the rows stay in the
+//! queue.
 
 use crate::rig::Rig;
 use crate::server::Server;

@@ -3,12 +3,12 @@
 /// Choice of the raw replies that go to a database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SampleChoice {
-    /// None.
+    /// No raw replies.
     #[default]
     None,
     /// Raw replies of parts that did not pass.
     Rejects,
-    /// All.
+    /// All raw replies.
     All,
 }
 
@@ -88,7 +88,7 @@ pub struct PartState {
     pub bin: Option<String>,
     /// Reasons, JSON.
     pub reasons: String,
-    /// Time since the part before left the nest, s.
+    /// Time since the previous part left the nest, s.
     pub cycle_s: Option<f64>,
     /// Bin whose beam saw the part.
     pub landed_bin: Option<String>,
@@ -172,7 +172,7 @@ pub struct MeasurementRow {
     pub verdict: String,
     /// Budget, JSON.
     pub budget: Option<String>,
-    /// `lot` or `golden` on the attempt that statistics count.
+    /// Kind of the part (`lot` or `golden`) on the attempt that statistics use; `None` on any other attempt.
     pub population: Option<String>,
 }
 
@@ -197,7 +197,7 @@ pub struct SampleRow {
     pub command: String,
     /// Text received.
     pub raw: String,
-    /// When the reply was complete.
+    /// Time at which the last byte of the reply arrived.
     pub at_us: i64,
 }
 
@@ -220,16 +220,16 @@ pub struct CurveRow {
     pub packed: Vec<u8>,
 }
 
-/// A row of another table, or a change of one.
+/// A new or changed row of any other table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EventRow {
     /// Entry of the queue.
     pub event: i64,
     /// Table.
     pub kind: String,
-    /// Row number of the row in that table; of the run for what belongs to a run, of the lot for what belongs to a lot.
+    /// Row number in that table; for a fact about a run or a lot, the row number of the run or lot.
     pub row: i64,
-    /// Row number of the run, where the row names one.
+    /// Row number of the run, if the row names a run.
     pub run: Option<i64>,
     /// Columns with their values, JSON.
     pub body: String,

@@ -9,7 +9,7 @@ use rusqlite::{Connection, Row, params};
 /// New parts of the batch.
 const NEW: &str = "SELECT row_id FROM outbox WHERE target_id = ?1 AND id <= ?2 AND kind = 'part'";
 
-/// Parts of earlier batches of which something became known, with the last entry of each.
+/// Parts of earlier batches that have changed since, with the last queue entry of each.
 const CHANGED: &str = "SELECT row_id, max(id) AS event FROM outbox
     WHERE target_id = ?1 AND id <= ?2 AND kind = 'part_change' GROUP BY row_id";
 
@@ -176,7 +176,7 @@ pub(super) fn batch(
     })
 }
 
-/// Entries of one target, up to one of them.
+/// Queue entries of one target, up to a given entry.
 struct Span<'a> {
     connection: &'a Connection,
     target: i64,
