@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// One test at a time: the first installs, and none loads the computer beside another.
+/// Lock of the running test: the first test installs the packages, and no other test loads the computer meanwhile.
 static TURN: Mutex<()> = Mutex::new(());
 
 fn turn() -> MutexGuard<'static, ()> {
@@ -24,7 +24,7 @@ fn file(name: &str) -> PathBuf {
     root.join("tests/instruments").join(name)
 }
 
-/// Returns python with what `requirements.txt` names.
+/// Returns the command of a Python with the packages that `requirements.txt` names.
 fn python() -> Command {
     let mut python = Command::new(file("run"));
     python.arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("instruments"));

@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 /// Highest exposure of the service that `systemd-analyze security` may compute, 0 to 10.
 const EXPOSURE: f64 = 3.0;
 
-/// Runs a program; `None` when it is missing, which goes to the terminal past the capture of the test.
+/// Runs a program; `None` when the program is missing. Reports that on the terminal, past the capture of the test.
 fn output(program: &str, arguments: &[&str]) -> Option<Output> {
     match Command::new(program).args(arguments).output() {
         Ok(output) => Some(output),

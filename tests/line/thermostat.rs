@@ -101,7 +101,7 @@ const RECIPE: &str = "config/rigs/thermostat/recipes/thermostat-ksd9700.toml";
 const RIG: &str = "config/rigs/thermostat/rig.toml";
 const CERTIFIED: &str = "rack = \"rack.toml\"";
 
-/// Returns what a run of one part says that its configuration is refused for.
+/// Runs a lot of one part; returns the reason for which the program refuses the configuration.
 fn refused(workshop: &Workshop) -> String {
     let said = workshop.run(&format!("{RUN} --lot A --count 1 --seed 1"));
     said.with_status(2).stderr.clone()
@@ -164,7 +164,7 @@ first_order = { gain_k = 22.0, time_constant_s = 52.0, delay_s = 4.5 }
 
 [map]";
 
-/// Bad input: file, text in it, text in its place, and what the program says of it.
+/// Bad input: file, text in the file, text that replaces it, and the message of the program.
 const BAD: [[&str; 4]; 10] = [
     [
         RIG,

@@ -32,7 +32,7 @@ pub struct Move<'a> {
     pub from: Pose,
     /// Pose of the mover at the end.
     pub to: Pose,
-    /// Margin, mm, >= 0: during the whole move the distance to every element must exceed it.
+    /// Margin, mm, >= 0: the distance to every element must exceed this margin during the whole move.
     pub margin_mm: f64,
     /// Elements that the check leaves out.
     pub ignore: &'a [ElementKey],
@@ -87,6 +87,6 @@ pub struct Clearance {
     pub distance_mm: f64,
     /// Element with this distance.
     pub nearest: ElementKey,
-    /// Fraction of the move, 0 to 1, at which this element is nearest; any such fraction when there are several.
+    /// Fraction of the move, 0 to 1, at which `nearest` has this distance; any such fraction when there are several.
     pub t: f64,
 }

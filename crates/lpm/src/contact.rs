@@ -109,8 +109,8 @@ impl Findings<'_> {
         Self::into(wanted, Vec::new())
     }
 
-    /// Starts with no contact found, and lists elements in `met`, which must be empty: so several questions share its
-    /// memory.
+    /// Starts with no contact found, and lists elements in `met`, which must be empty; several questions can share the
+    /// memory of `met`.
     #[inline]
     pub(crate) fn into(wanted: Wanted, met: Vec<ElementKey>) -> Self {
         Findings {
@@ -162,8 +162,8 @@ struct Search<'a, 'b> {
 /// Number of pieces that [`Recent`] remembers: as many as squares lie side by side across a path.
 const REMEMBERED: usize = 16;
 
-/// The pieces checked last, for [`Wanted::Every`]. The walk shows a piece once for each of its squares, in close
-/// succession.
+/// The pieces checked last, for [`Wanted::Every`]. The walk visits a piece once for each square that the piece covers,
+/// in close succession.
 struct Recent {
     pieces: [u32; REMEMBERED],
     next: usize,

@@ -9,7 +9,7 @@ use super::shape::{Flaw, Shape};
 use super::space::{Filling, Space};
 use super::stationary::{NONE, Pieces};
 
-/// The stationary elements. Each can be inserted and removed alone; nothing is rebuilt.
+/// The stationary elements. Inserting or removing one element rebuilds nothing.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
     slots: Vec<Slot>,
@@ -25,7 +25,7 @@ pub struct Model {
 #[derive(Debug, Clone)]
 struct Slot {
     generation: u32,
-    /// Number of its first piece; [`NONE`] for a free slot.
+    /// Number of the first piece of the element; [`NONE`] for a free slot.
     first: u32,
     id: Name,
     /// Enclosed spaces of an element with a mesh.

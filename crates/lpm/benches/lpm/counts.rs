@@ -3,8 +3,8 @@
 //!
 //! `-- counts` starts this program again under callgrind, once per row and contestant; callgrind counts inside
 //! [`counted`]. The simulated caches have the sizes of [`CACHES`] on every machine. The simulated branch predictor is
-//! simpler than that of today's processors: its count stands for questions that a processor has not learned. With cold
-//! caches `lines fetched` counts the lines of data from memory, those of stack, constants and question included.
+//! simpler than that of today's processors, so its count is one for questions that a processor has not learned. With
+//! cold caches `lines fetched` counts the lines of data from memory, those of stack, constants and question included.
 
 use std::fs;
 use std::hint::black_box;

@@ -44,7 +44,7 @@ pub(crate) struct Proposal {
 
 /// Returns the rounding bound of one evaluated plane between two pieces, mm.
 ///
-/// Only the difference of their positions counts: a kilometre common to both costs no digit.
+/// Only the difference of the positions counts: an offset of a kilometre that both pieces share costs no digit.
 pub(crate) fn noise(a: &Piece, b: &Piece, shift: Vec3) -> f64 {
     NOISE * (a.span + b.span + reach(shift) + reach(between(a, b, shift)))
 }

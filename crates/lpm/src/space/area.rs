@@ -7,7 +7,7 @@ use super::four::Four;
 /// dividing by it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
-/// The outermost column and row, 100 km out; farther places are clamped to it, because no grid reaches as far.
+/// The outermost column and row, 134 km out; farther places are clamped to it, because no grid reaches as far.
 const FARTHEST: f32 = (1 << 21) as f32;
 
 /// First and last column and row of a range of squares, each stored twice, to compare four numbers at once.

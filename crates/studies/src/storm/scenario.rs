@@ -1,7 +1,7 @@
 //! The scenario of a seed: a rig, faults of world and line, and the lives of the controller. A life is one run of the
 //! controller program, from its start to its end or kill.
 //!
-//! No fault lasts beyond [`CEASES_US`] of rig time: the study then also cancels each fault that still waits for its
+//! No fault lasts beyond [`CEASES_US`] of rig time: at that time the study cancels each fault that still waits for its
 //! part. Lives that start later have no faults.
 
 use crate::dice::Dice;

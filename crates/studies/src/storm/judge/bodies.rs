@@ -13,7 +13,7 @@ use rigsim::truth::{BodyTruth, Place};
 const CONFIRMED_US: u64 = 3_000_000;
 /// Time that the fingers take to open, microseconds: a run that ends meanwhile declares the part lost before it falls.
 const OPENING_US: u64 = 300_000;
-/// Longest time until the reset that detects a lost part, microseconds: the operator may wait this long before it.
+/// Longest time until the reset that detects a lost part, microseconds: the operator may wait this long.
 const NOTICED_US: u64 = 60_000_000;
 /// Codes of the alarms that declare a part lost.
 const DECLARED: [&str; 6] = [
@@ -188,8 +188,8 @@ fn is_declared(case: &Case, at_us: u64) -> bool {
     has_alarm(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
 
-/// Returns true when an alarm counts a second body in `bin`, or when a kill may have prevented it: a killed life may
-/// have confirmed the first body and not yet counted the second.
+/// Returns true when an alarm counts a second body in `bin`, or when a kill may have prevented this alarm: a killed
+/// life may have confirmed the first body and not yet counted the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
     let cut_off = case
