@@ -5,8 +5,8 @@
 //!   commit); then the file confirms the batch. A batch keeps its UUID until the database has said whether it has that
 //!   batch ([`handshake`]), so every row arrives once, whichever program dies in between. A batch that did not arrive
 //!   comes again with half of its rows.
-//! - Batches of a file are numbered without gaps and a number exists once. So two programs, a copied file or a file from
-//!   a backup never mix their rows: the database refuses the second sender, with a remedy ([`Refusal`]).
+//! - Batches of a file are numbered without gaps and a number exists once. So two programs, a copied file or a file
+//!   from a backup never mix their rows: the database refuses the second sender, with a remedy ([`Refusal`]).
 //! - [`Pusher`] sends in a thread of its own; the rig never waits for a database.
 //! - [`Reader`] answers the questions of a history over all rigs, or some.
 //! - [`overview`] asks what all rigs do and made, for a page that many screens share.

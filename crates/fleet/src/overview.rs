@@ -1,11 +1,12 @@
 //! Asks a database what all its rigs do and made, for the page of all rigs.
 //!
-//! - [`watch`] keeps one connection and asks every [`EVERY`], whatever the number of screens; it asks for shifts, reasons
-//!   and reference parts every [`DAY_EVERY`]. Each answer is one snapshot: a transaction that only reads and ends at once.
+//! - [`watch`] keeps one connection and asks every [`EVERY`], whatever the number of screens; it asks for shifts,
+//!   reasons and reference parts every [`DAY_EVERY`]. Each answer is one snapshot: a transaction that only reads and
+//!   ends at once.
 //! - A question reads the last 36 hours, rig by rig, through the indexes of the partitions, and the last 200 alarms,
 //!   50 calibrations and 100 reference checks of a rig. Its cost does not grow with the age of the database.
-//! - `OFFSET 0` keeps a subquery about one rig apart, so that the server enters the index once per rig instead of reading
-//!   a month of all rigs.
+//! - `OFFSET 0` keeps a subquery about one rig apart, so that the server enters the index once per rig instead of
+//!   reading a month of all rigs.
 //! - When the database is lost, the last answers stay, with the trouble; the next question connects again.
 
 mod day;

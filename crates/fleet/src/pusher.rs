@@ -126,7 +126,8 @@ impl Drop for Pusher {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         let running = |ended: &mut usize| *ended < self.threads.len();
-        // A thread that has not ended by then ends with the program; the program sends its batch again at the next start.
+        // A thread that has not ended by then ends with the program; the program sends its batch again at the next
+        // start.
         drop(
             self.shared
                 .changed

@@ -1,8 +1,8 @@
 //! Answers the questions of a history from a database with many rigs.
 //!
-//! A reader has one transaction that only reads, so that all answers of a command come from one snapshot. A reader needs
-//! no more than the role `relayrig_reader`. A command reads without a time limit; a page opens a reader with a limit for
-//! each request.
+//! A reader has one transaction that only reads, so that all answers of a command come from one snapshot. A reader
+//! needs no more than the role `relayrig_reader`. A command reads without a time limit; a page opens a reader with a
+//! limit for each request.
 
 use crate::error::{FleetError, Result};
 use crate::link::Link;
@@ -50,8 +50,8 @@ impl Reader {
         Self::open_within(target, rigs, None)
     }
 
-    /// Connects and begins to read. The server ends a statement after `limit`, and the transaction when it stays idle for
-    /// 60 s (an hour without `limit`).
+    /// Connects and begins to read. The server ends a statement after `limit`, and the transaction when it stays idle
+    /// for 60 s (an hour without `limit`).
     ///
     /// # Errors
     /// Fails as [`Reader::open`] does.

@@ -1,5 +1,5 @@
-//! A PostgreSQL server for tests and studies: under an unprivileged user, with a data directory of its own, on a loopback
-//! port. Needs the Debian package `postgresql` (15 or later).
+//! A PostgreSQL server for tests and studies: under an unprivileged user, with a data directory of its own, on a
+//! loopback port. Needs the Debian package `postgresql` (15 or later).
 
 use config::{FleetTarget, SampleChoice, TlsChoice};
 use std::io::{Error, Result};

@@ -126,7 +126,8 @@ impl<'a> Meeting<'a> {
         )
     }
 
-    /// Returns the footprint whose axes the sum of both footprints has; `None` for two rectangles turned against each other.
+    /// Returns the footprint whose axes the sum of both footprints has; `None` for two rectangles turned against each
+    /// other.
     #[inline]
     fn framed(&self) -> Option<&'a Prism> {
         match (self.element.radius > 0.0, self.mover.radius > 0.0) {

@@ -111,7 +111,8 @@ fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side 
     }
 }
 
-/// Returns the side for two rectangles turned against each other; each rectangle may touch one of two sides of the other.
+/// Returns the side for two rectangles turned against each other; each rectangle may touch one of two sides of the
+/// other.
 #[inline(always)]
 fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     let seen = Askew::of(element, mover, apart);

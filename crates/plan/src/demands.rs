@@ -18,9 +18,9 @@ pub struct Demands {
     /// True when a plan takes straight ways and given units only: no ways of two steps, no subassemblies that the
     /// planner finds.
     pub straight_only: bool,
-    /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element rests
-    /// on what holds it from below. Two that hold each other from below, such as a rod in its cylinder, do not rest on
-    /// each other.
+    /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element
+    /// rests on what holds it from below. Two that hold each other from below, such as a rod in its cylinder, do not
+    /// rest on each other.
     pub keeps_supports: bool,
 }
 

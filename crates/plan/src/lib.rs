@@ -36,7 +36,8 @@
 //! ```
 //!
 //! # Files
-//! *The paper* is the published method that the library improves: extruded boxes, and the direction that frees most first.
+//! *The paper* is the published method that the library improves: extruded boxes, and the direction that frees most
+//! first.
 //!
 //! | files | what they hold |
 //! |---|---|

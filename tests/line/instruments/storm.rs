@@ -1,15 +1,16 @@
-//! A storm on a link to a simulated instrument: random programs under random faults, and a judge that knows the value of
-//! each query.
+//! A storm on a link to a simulated instrument: random programs under random faults, and a judge that knows the value
+//! of each query.
 //!
-//! The link runs over an in-process stream in virtual time, with a profile that comes with the program. Each query has a
-//! value of its own: the current at a level that no neighbouring query has, or a block of a length of its own. The rules:
+//! The link runs over an in-process stream in virtual time, with a profile that comes with the program. Each query has
+//! a value of its own: the current at a level that no neighbouring query has, or a block of a length of its own. The
+//! rules:
 //!
 //! - a value must be that of its query (else it is *foreign*);
 //! - a program must end by its deadline (else it *hangs*);
 //! - a failure must have a name and a text in every language (else it is *nameless*);
-//! - after the last fault at most two programs fail (else the link has not *recovered*): the first meets what the faults
-//!   left behind, such as a late reply or the local mode; the second may find, as it resynchronises, that the instrument
-//!   was switched off.
+//! - after the last fault at most two programs fail (else the link has not *recovered*): the first meets what the
+//!   faults left behind, such as a late reply or the local mode; the second may find, as it resynchronises, that the
+//!   instrument was switched off.
 
 use bus::instrument::{Link, Opener};
 use bus::{Pace, from_streams};

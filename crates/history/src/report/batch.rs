@@ -1,4 +1,5 @@
-//! Curves of a batch on paper: set point, reference thermometer and rate over time; marks show where a contact switched.
+//! Curves of a batch on paper: set point, reference thermometer and rate over time; marks show where a contact
+//! switched.
 
 use super::Paper;
 use super::plot::{LIMIT, LINE, Plot, QUIET, ticked};
