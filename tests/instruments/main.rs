@@ -1,5 +1,5 @@
 //! Drives the simulated instruments with pyvisa-py and the drivers of pymeasure, and servers of other makers with
-//! `relayrig instrument`; `run` installs them from PyPI.
+//! `relayrig instrument`; the script `run` installs drivers and servers from PyPI.
 //!
 //! A test binary of its own, so that nothing else loads the computer beside instruments in real time.
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStdout, Command};
 
-/// The simulated rig on pseudo-terminals, printing changes of its outputs; dropping kills it.
+/// The simulated rig on pseudo-terminals, printing changes of its outputs; dropping this value kills the rig.
 pub struct Rig {
     process: Child,
     told: BufReader<ChildStdout>,

@@ -21,7 +21,7 @@ fn output(program: &str, arguments: &[&str]) -> Option<Output> {
     }
 }
 
-/// Returns what a program printed on both streams; fails when it failed.
+/// Returns what a program printed on both streams; fails when the program failed.
 fn said(output: &Output) -> String {
     let text = [&output.stdout, &output.stderr].map(|it| String::from_utf8_lossy(it).into_owned());
     let text = text.concat();

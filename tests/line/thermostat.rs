@@ -68,7 +68,7 @@ fn a_batch_of_forty_agrees_with_the_truth() {
 }
 
 /// Returns the least number of values out of `all` whose U must cover the truth: an honest U, which covers 93 % or
-/// more, falls below it in less than one lot of a hundred.
+/// more, falls below this number in less than one lot of a hundred.
 fn least_covered(all: usize) -> usize {
     let (mut chance, mut below) = (0.93_f64.powi(all as i32), 1.0);
     for missed in 0..=all {

@@ -198,7 +198,7 @@ impl Plant {
 }
 
 impl File {
-    /// Parses a text; messages name it as the file at `path`.
+    /// Parses a text; messages name `path` as its file.
     pub fn parse(path: PathBuf, text: String) -> Result<Self, ConfigError> {
         match Node::parse(&text) {
             Ok(root) => Ok(Self { path, text, root }),
@@ -246,7 +246,7 @@ fn load_reference_parts(folder: &Folder, name: &str) -> Result<ReferenceSet, Con
     Ok(set)
 }
 
-/// Loads the certificate of the rack; fails when it has other sockets than the rack.
+/// Loads the certificate of the rack; fails when the certificate names other sockets than the rack has.
 fn load_certificate(
     folder: &Folder,
     name: &str,
@@ -260,7 +260,7 @@ fn load_certificate(
     Ok(certificate)
 }
 
-/// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an
+/// Loads the scene. The guard refuses unknown keys, bodies without size, and actuators whose stroke is blocked in an
 /// empty rig.
 pub(super) fn load_scene(folder: &Folder) -> Result<GuardSettings, ConfigError> {
     let file = folder.file("scene.toml", "the bodies around the nest")?;

@@ -137,7 +137,7 @@ impl Error for Unreadable {
     }
 }
 
-/// A JSON value from which serde reads a type. It keeps repeated members, so that the type refuses them.
+/// A JSON value from which serde reads a type; keeps repeated members, so that the type refuses them.
 #[derive(Clone, Deserialize)]
 #[serde(untagged)]
 enum Json {

@@ -133,7 +133,7 @@ pub enum FleetError {
         target: String,
         /// What the program was doing.
         doing: &'static str,
-        /// How long it waited, seconds.
+        /// How long the program waited, seconds.
         seconds: u64,
         /// True while sending: what was not sent stays in the queue.
         queued: bool,

@@ -33,7 +33,7 @@ pub const DAY_EVERY: Duration = Duration::from_secs(60);
 /// Longest time for one statement.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Time that the overview looks back, µs: a day, and the shift that had begun before it.
+/// Time that the overview looks back, µs: a day, and a shift that began before that day.
 const BACK_US: i64 = 36 * HOUR_US;
 const HOUR_US: i64 = 3_600_000_000;
 
@@ -42,7 +42,7 @@ const HOUR_US: i64 = 3_600_000_000;
 pub struct Watched {
     /// Database.
     pub target: FleetTarget,
-    /// Shifts of the plant; empty when it has none.
+    /// Shifts of the plant; empty for a plant without shifts.
     pub shifts: Vec<Shift>,
     /// Time zone of the shifts.
     pub zone: TimeZone,

@@ -38,7 +38,7 @@ pub struct TargetState {
 }
 
 impl TargetState {
-    /// Returns true when the database lacks a part for longer than it may.
+    /// Returns true when the database lacks a part for longer than `alarm_after_s`.
     #[must_use]
     pub fn is_late(&self) -> bool {
         self.lag_s > f64::from(self.alarm_after_s)
@@ -48,7 +48,7 @@ impl TargetState {
 /// Receives the states of all databases after each attempt.
 pub type Told = Box<dyn Fn(&[TargetState]) + Send + Sync>;
 
-/// Sends to all databases until it is dropped; the drop waits at most [`LAST_ROWS`] for queued rows.
+/// Sends to all databases until this value is dropped; the drop waits at most [`LAST_ROWS`] for queued rows.
 pub struct Pusher {
     shared: Arc<Shared>,
     threads: Vec<JoinHandle<()>>,

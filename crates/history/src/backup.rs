@@ -1,4 +1,4 @@
-//! Copies the history while it is in use, and checks its integrity. Writers continue during both.
+//! Copies the history while it is in use, and checks its integrity. Writers continue during copy and check.
 
 use super::Archive;
 use super::error::{Doing, HistoryError, Result};

@@ -75,7 +75,7 @@ pub enum HistoryError {
     Unsettled {
         /// Path of the file.
         path: PathBuf,
-        /// File that SQLite keeps beside it.
+        /// File that SQLite keeps beside `path`.
         beside: PathBuf,
     },
     /// The file is read-only and has an older schema, which this program would have to migrate.

@@ -3,9 +3,9 @@
 //! | state | may a run begin? | what leads to this state |
 //! |---|---|---|
 //! | open | yes, with its recipe | a run that was stopped, cut off or ended by an alarm; a release |
-//! | running | yes: the previous run was cut off | the start of a run; the next program on the rig makes it open |
+//! | running | yes: the previous run was cut off | the start of a run; the next program on the rig makes the lot open |
 //! | held | no | a failed reference check, the reject-rate limit, a person |
-//! | complete | a retest only, with the same recipe | the count was reached, or a person closed it |
+//! | complete | a retest only, with the same recipe | the count was reached, or a person closed the lot |
 //!
 //! A run is *cut off* when the program ends without closing it, for example at a power failure.
 //!

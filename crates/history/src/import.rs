@@ -2,8 +2,8 @@
 //!
 //! The header names parameter keys, and optionally `time` (RFC 3339), `verdict`, `serial` and `bin`. An empty cell
 //! means that the value was not measured. The import ignores columns that only the export writes (`lot`, `seq`,
-//! `uncertainty ...`), so that it takes an exported file. It refuses any other unknown column, because a misspelt key
-//! would lose its values unnoticed.
+//! `uncertainty ...`), so that it takes an exported file. The import refuses any other unknown column, because a
+//! misspelt key would lose its values unnoticed.
 
 use super::csv::{self, CsvError, Record};
 use super::inquiry::checks::VERDICTS;

@@ -2,8 +2,8 @@
 //!
 //! A question is one SQL text, written for the file, and one function that reads its rows. A [`Server`] knows the
 //! tables of the file by their names and translates the text. SQL selects and orders; Rust does all arithmetic, so that
-//! file and server give the same figures to the last digit. Where they store rows in different ways, the text depends
-//! on [`Dialect`].
+//! file and server give the same figures to the last digit. Where file and server store rows in different ways, the
+//! text depends on [`Dialect`].
 
 use super::error::{HistoryError, Result};
 pub use rusqlite::types::Value;

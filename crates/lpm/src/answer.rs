@@ -24,8 +24,8 @@ impl ElementKey {
     }
 }
 
-/// A move of one mover. With equal rotations at start and end it is a straight translation; otherwise the position
-/// changes linearly while the mover turns along the shortest way.
+/// A move of one mover: with equal rotations at start and end, a straight translation; otherwise the position changes
+/// linearly while the mover turns along the shortest way.
 #[derive(Debug, Clone, Copy)]
 pub struct Move<'a> {
     /// Pose of the mover at the start.
@@ -82,8 +82,8 @@ pub struct Contact {
 /// Least distance from the mover to any element over a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
-    /// Least distance, mm; 0 when the bodies meet. It exceeds the true distance by at most 1e-9 mm for straight moves,
-    /// and by at most 5e-4 mm for turning ones.
+    /// Least distance, mm; 0 when the bodies meet. The value exceeds the true distance by at most 1e-9 mm for straight
+    /// moves, and by at most 5e-4 mm for turning moves.
     pub distance_mm: f64,
     /// Element with this distance.
     pub nearest: ElementKey,

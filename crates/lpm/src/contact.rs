@@ -41,7 +41,8 @@ pub(crate) struct Found {
 /// How a contact was found, with the data from which its place and normal follow.
 #[derive(Debug, Clone)]
 enum Evidence {
-    /// Index of the piece of the mover. Both pieces are upright, so a closed form gives place and normal.
+    /// Index of the piece of the mover; this piece and that of the element are upright, so a closed form gives place
+    /// and normal.
     Closed(u32),
     /// Result of a search. Boxed, so that the closed forms, which are more frequent, stay small.
     Searched(Box<Gap>),
@@ -189,7 +190,7 @@ impl Recent {
 
 impl Visit for Search<'_, '_> {
     /// Returns true when the question asks for the first contact: pieces then wait as candidates, so that the search
-    /// checks them in order. For any contact it checks them at once.
+    /// checks them in order. When the question asks for any contact, the search checks pieces at once.
     #[inline]
     fn in_order(&self) -> bool {
         self.found.wanted == Wanted::First
@@ -331,7 +332,7 @@ impl Passage<'_> {
             return Some((t, None));
         }
         // Heights and footprints are each within the margin, but the diagonal distance over an edge may still exceed
-        // it.
+        // the margin.
         let (element, mover) = (element.piece(), mover.piece());
         let hit = straight::first_within(&element, &mover, run.way, margin, t, until)?;
         Some((hit.t, Some(hit.gap)))

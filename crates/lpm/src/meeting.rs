@@ -27,7 +27,7 @@ const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 const GRAZED_MM: f64 = 1e-7;
 
 /// Distance from the end of a round corner within which a contact is not refined, mm, because beyond that end a side
-/// may come first. It exceeds all rounding.
+/// may come first; larger than all rounding.
 const ROUND_MM: f64 = 1e-3;
 
 /// A straight path, with the reciprocals of its displacement.

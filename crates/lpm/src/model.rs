@@ -203,8 +203,8 @@ impl Model {
         self.slots[slot as usize].first
     }
 
-    /// Returns a point of one body, the element in a slot or `other`, that lies inside the other body; `None` without
-    /// one. Such bodies need not touch with their surfaces.
+    /// Returns a point of one body, the element in a slot or `other`, that lies inside the other body, even if their
+    /// surfaces do not touch; `None` without such a point.
     pub(crate) fn shared_point(&self, slot: u32, other: &Interior) -> Option<[f64; 3]> {
         let slot = &self.slots[slot as usize];
         match &slot.interior {

@@ -97,8 +97,8 @@ fn followers<'a>(problem: &Problem, node: &Node<'a>) -> Vec<(u32, Node<'a>)> {
         }
         let next = node.clone().along(direction);
         if next.order.len() > node.order.len() {
-            // The start of an order is level 0 and its first direction costs nothing; counting it as one more for
-            // every order keeps the levels ascending.
+            // The start of an order is level 0 and its first direction costs nothing; counting this direction as one
+            // more change in every order keeps the levels ascending.
             found.push((1, next));
         }
     }

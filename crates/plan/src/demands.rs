@@ -19,8 +19,8 @@ pub struct Demands {
     /// planner finds.
     pub straight_only: bool,
     /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element
-    /// rests on what holds it from below. Two that hold each other from below, such as a rod in its cylinder, do not
-    /// rest on each other.
+    /// rests on what holds it from below. Two elements that hold each other from below, such as a rod in its cylinder,
+    /// do not rest on each other.
     pub keeps_supports: bool,
 }
 

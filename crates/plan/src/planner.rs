@@ -17,7 +17,7 @@ use crate::shortest::best_order;
 use crate::table::Interference;
 use crate::ways::{Units, straight, two_step};
 
-/// The interference tables of an assembly; it makes plans from them.
+/// Makes plans from the interference tables of an assembly.
 #[derive(Debug, Clone)]
 pub struct Planner<'a> {
     assembly: &'a Assembly,

@@ -3,8 +3,8 @@
 //!
 //! - Error is the difference from the true resistance of the closures that the rig read. Every world here has a thermal
 //!   EMF of 10 uV (1 sd).
-//! - Repeatability is the scatter over repeated tests of the same bodies. Films on the contact cause nearly all of it,
-//!   and it falls with the square root of the number of closures.
+//! - Repeatability is the scatter over repeated tests of the same bodies. Films on the contact cause nearly all of this
+//!   scatter, which falls with the square root of the number of closures.
 //! - Seconds are the rig time of all stages that read a contact; the same stages also measure times and bounce.
 
 use super::figure::{Figure, rms};

@@ -1,7 +1,7 @@
 //! The rows of one lot, joined with the truth about its parts.
 //!
-//! [`Lot::read`] joins two files of one run by `seq`: the rows of `run --json` and the truth of `--truth`, both one
-//! JSON object per line. It ignores unknown keys, so that either file may grow.
+//! [`Lot::read`] joins two files of one run by `seq`, each with one JSON object per line: the rows of `run --json` and
+//! the truth of `--truth`. [`Lot::read`] ignores unknown keys, so that later versions may add keys to either file.
 
 use anyhow::{Context, bail};
 use machine::dut::Characteristic;

@@ -17,7 +17,7 @@ const PARTS_PER_HOUR: f64 = 2100.0;
 /// The line must make at least this share of the parts per hour that the critical path permits.
 const SHARE: f64 = 0.95;
 
-/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes it takes the longer time.
+/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes, the longer time.
 fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 5] {
     [
         ("path: pusher to the nest", mechanism.pusher_ms),

@@ -4,12 +4,12 @@
 //!   writes the row. A history without targets queues nothing.
 //! - [`Outbox::prepare`] gives the next batch a UUID and stores the UUID before the caller sends anything. A batch that
 //!   may have arrived keeps its UUID until the target says whether it has that batch, so no batch is sent under two
-//!   UUIDs. [`Outbox::prepare`] then returns half of its entries, so that a batch too long for the link gets through at
-//!   last. The target drops rows that arrive a second time.
+//!   UUIDs. [`Outbox::prepare`] returns such a batch again, with half of the entries, so that a batch too long for the
+//!   link gets through at last. The target drops rows that arrive a second time.
 //! - [`Outbox::confirm`] moves the watermark and removes the queued entries. Call it after the target has committed.
 //! - Retention deletes no run of which a target lacks rows.
 //!
-//! An outbox has a connection of its own. It holds the lock of the file only while it notes names and watermarks, never
+//! An outbox has a connection of its own and holds the lock of the file only while it notes UUIDs and watermarks, never
 //! while it reads rows.
 
 mod batch;

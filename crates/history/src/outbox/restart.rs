@@ -18,7 +18,7 @@ pub enum Restart {
     TakeOver {
         /// UUID of every run of the rig that the target has.
         known: Vec<String>,
-        /// Rows outside of runs travel when they are younger than this instant, microseconds since 1970 UTC.
+        /// Rows outside of runs are queued when they are younger than this instant, microseconds since 1970 UTC.
         since_us: i64,
     },
 }

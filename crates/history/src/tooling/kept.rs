@@ -128,7 +128,7 @@ pub struct StepDone {
     pub role: String,
 }
 
-/// A plan that was started, with what is done of it.
+/// A plan that was started, with the steps that are done.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartedPlan {
     /// The entry of the plan in the list.
@@ -338,7 +338,7 @@ impl Archive {
         under_way(self.source.file()?).doing("reading the plan under way")
     }
 
-    /// Returns a plan with what is done of it; `None` when no plan has this number.
+    /// Returns a plan with the steps that are done; `None` when no plan has this number.
     ///
     /// # Errors
     /// Fails when the history cannot be read.

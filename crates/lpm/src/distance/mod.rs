@@ -83,8 +83,8 @@ pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3
     }
 }
 
-/// Returns the proposal of the closed form. When its direction is the difference of large numbers (two corners a
-/// micrometre apart), refines it by the general search.
+/// Returns the proposal of the closed form, refined by the general search when its direction is the difference of large
+/// numbers (two corners a micrometre apart).
 fn closed_form(element: &Piece, mover: &Piece, shift: Vec3, c: Vec3) -> (Proposal, f64) {
     let (proposal, distance) = upright::propose(element, mover, c);
     let lower = separation(element, mover, shift, proposal.normal);

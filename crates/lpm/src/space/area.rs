@@ -3,8 +3,8 @@
 use super::cover::Cover;
 use super::four::Four;
 
-/// Edge of a square of the grid, mm: about the distance between fixture elements. It is a power of two, so that
-/// dividing by it is exact.
+/// Edge of a square of the grid, mm: about the distance between fixture elements; a power of two, so that dividing by
+/// it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
 /// The outermost column and row, 134 km out; farther places are clamped to it, because no grid reaches as far.

@@ -2,8 +2,8 @@
 //! passes the squares between two lines.
 //!
 //! Both lines are tracked in units of 2^-32 squares. The width includes a reserve for the rounding to units, at most
-//! one per band, so that the strip contains every square that the box passes. It ignores where within a band the box
-//! starts and ends: too many squares are safe.
+//! one per band, so that the strip contains every square that the box passes. The strip ignores where within a band the
+//! box starts and ends: too many squares are safe.
 
 use super::area::{Area, PITCH_MM};
 use super::sweep::{SLACK_MM, Sweep};

@@ -55,7 +55,7 @@ pub const CHAIN_K: f64 = 0.05;
 /// Standard deviation of delay and lag of the sensors, percent.
 const SENSOR_SPREAD_PCT: f64 = 30.0;
 
-/// Draws a chamber with control and reference sensor at random; draws the room temperature too when it is `None`.
+/// Draws a chamber with control and reference sensor at random, and the room temperature too when `room_c` is `None`.
 pub fn drawn(medium: Medium, room_c: Option<f64>, seed: u64) -> (ChamberValues, [SensorValues; 2]) {
     let mut draw = Draw::new(seed, Subject::Rig, 3);
     let (nominal, sensor) = medium.values();

@@ -47,7 +47,7 @@ pub struct Run {
     pub command: String,
     /// Machine that the figures need.
     pub machine: Machine,
-    /// Prefixes of the names of the figures to show; when empty, the document shows all. It always shows a missed bar.
+    /// Prefixes of the names of the figures to show; when empty, the document shows all. A missed bar is always shown.
     #[serde(default)]
     pub shows: Vec<String>,
     /// Pictures below the figures.

@@ -1,7 +1,7 @@
 //! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that every row has
 //! a body, and that no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the
-//! verdict, and by the body that came to rest in the bin when the beam confirmed it. A body that clung to another one
-//! has no row, because the rig never judged it; the alarm of the beam that counted it names its bin.
+//! verdict, and by the body that came to rest in the bin when the beam confirmed the part. A body that clung to another
+//! one has no row, because the rig never judged it; the alarm of the beam that counted this body names its bin.
 
 use super::{Case, rig_us, seconds};
 use crate::storm::life::{End, EndedLife};
@@ -81,7 +81,7 @@ fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
         .map(|(number, _)| number)
 }
 
-/// Returns the body that was in the nest at the verdict. For a part without a test it prefers the body in the gripper,
+/// Returns the body that was in the nest at the verdict. For a part without a test, prefers the body in the gripper,
 /// unless that body already has a row of the same life.
 fn body_by_place(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<usize> {
     let judged_us = rig_us(row.time);
