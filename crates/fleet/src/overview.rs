@@ -142,7 +142,7 @@ async fn connected(target: &FleetTarget) -> Result<Link> {
     Ok(link)
 }
 
-/// Asks a database once, over a connection of its own; looks back from an instant, or from now.
+/// Asks a database once, over a connection of its own; looks back from `as_of`, or from now.
 ///
 /// # Errors
 /// Fails as [`Link::open`] does.

@@ -14,7 +14,7 @@ use tokio_postgres::Row;
 /// The history that may send for each rig: the one with the highest epoch.
 const CURRENT: &str = "SELECT DISTINCT ON (rig_id) id, rig_id, host FROM relayrig.history ORDER BY rig_id, epoch DESC";
 
-/// Asks what each rig does, as of an instant or of the clock of the database.
+/// Asks what each rig does at the instant `as_of`, or now by the clock of the database.
 pub(super) async fn ask(link: &Link, as_of: Option<Moment>) -> Result<Now> {
     let clock = "SELECT (extract(epoch FROM clock_timestamp()) * 1000000)::bigint";
     let at_us = match as_of {

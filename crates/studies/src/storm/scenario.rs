@@ -72,7 +72,8 @@ pub struct Scenario {
     pub faults: Vec<String>,
     /// Instants at which a safety input is disturbed, microseconds.
     pub disturbed_us: Vec<u64>,
-    /// Whether a line may be deaf or slow for a while: outputs then wait for the watchdogs of their modules.
+    /// Whether a line may be deaf or slow for a while: outputs then stay on until the watchdogs of their modules
+    /// expire.
     pub lines_disturbed: bool,
     /// Lives while faults happen.
     pub lives: Vec<Life>,
