@@ -82,8 +82,8 @@ fn least_covered(all: usize) -> usize {
 }
 
 /// Returns the range of the mean square of `all` normal values, three standard deviations to either side (Wilson and
-/// Hilferty): a mean square of errors in standard uncertainties outside of it shows a U that is stated too small or too
-/// large.
+/// Hilferty). If the errors, in units of their standard uncertainty, have a mean square outside this range, U is stated
+/// too small or too large.
 fn chi_squared(all: usize) -> [f64; 2] {
     let share = 2.0 / (9.0 * all as f64);
     [-3.0, 3.0].map(|z| (1.0 - share + z * share.sqrt()).powi(3))

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Result of this crate.
 pub type Result<T> = std::result::Result<T, FleetError>;
 
-/// Why the database refuses this file, though it can be reached. Nothing was written.
+/// Why the database refuses this file, though the database can be reached. Nothing was written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// Another file sends under this name.

@@ -124,7 +124,7 @@ fn note(error: &FleetError, seen: &Sender<Overview>) {
     });
 }
 
-/// Runs `work` in a transaction that only reads. The connection is lost after an error.
+/// Runs `work` in a transaction that only reads. Drop the connection after an error.
 async fn snapshot<T>(link: &Link, work: impl Future<Output = Result<T>>) -> Result<T> {
     let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
     link.step(DOING, link.client.batch_execute(begin)).await?;

@@ -88,7 +88,7 @@ impl Reader {
 
 impl Drop for Reader {
     fn drop(&mut self) {
-        // A request that a client gave up drops its reader on a thread that must not wait.
+        // When a client gives up a request, the reader is dropped on a thread that must not wait.
         if let Some(runtime) = self.runtime.take() {
             runtime.shutdown_background();
         }

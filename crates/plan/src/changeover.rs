@@ -36,7 +36,7 @@ pub enum Planned {
     Changeover(Box<Changeover>),
     /// Elements of the first assembly lock each other.
     LockedFrom(LockedElements),
-    /// Elements of the second assembly lock each other: it cannot be put together.
+    /// Elements of the second assembly lock each other, so the second assembly cannot be put together.
     LockedTo(LockedElements),
 }
 

@@ -22,7 +22,7 @@ pub struct Part {
     /// Reasons for a verdict other than `pass`.
     #[serde(default)]
     pub reasons: Vec<String>,
-    /// Values by key; those that are no number say whether a part conforms.
+    /// Values by key; a value that is not a number states whether the part conforms.
     #[serde(default)]
     values: BTreeMap<String, Value>,
     #[serde(default)]

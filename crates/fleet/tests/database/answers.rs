@@ -1,4 +1,4 @@
-//! A database answers as the history file does, for one rig and for many.
+//! Tests: a database answers as the history file does, for one rig and for many.
 
 use crate::rig::Rig;
 use crate::server::Server;

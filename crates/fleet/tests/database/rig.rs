@@ -36,8 +36,8 @@ impl Rig {
         }
     }
 
-    /// Tests `count` parts of a lot in a run of its own, each with `values` measurements; every tenth fails. Leaves the
-    /// last part in the machine.
+    /// Records `count` parts of a lot in a run of its own, each with `values` measurements; every tenth fails. Leaves
+    /// the last part in the machine.
     pub fn run(&self, lot: &str, count: u64, values: usize) {
         let mut store = Store::open(&self.db).unwrap();
         store.begin_lot(&lot_record(lot)).unwrap();

@@ -188,7 +188,7 @@ impl Outbox {
     }
 
     /// Returns the next batch, at most `entries` entries of the queue; `None` when the target lacks nothing. A batch
-    /// that may have arrived comes again under its own name, with half of its entries.
+    /// that may have arrived comes again under its own UUID, with half of its entries.
     ///
     /// # Errors
     /// Fails when the file cannot be read or written.

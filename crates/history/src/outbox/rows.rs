@@ -124,7 +124,7 @@ const TABLES: [Table; 10] = [
     ),
 ];
 
-/// Reads the rows that the entries of `target` up to `to` name; leaves name and number of the batch empty.
+/// Reads the rows that the entries of `target` up to `to` name; leaves UUID and number of the batch empty.
 pub(super) fn batch(
     connection: &Connection,
     (target, to): (i64, i64),
