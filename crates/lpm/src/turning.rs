@@ -186,10 +186,13 @@ struct Plane<'a> {
     normal: Vec3,
     /// Separation of the plane from the origin of the mover at `h = 0`, minus the rounding bound, mm.
     base: f64,
+    /// Vector from the origin of the mover to the centre of its piece, mm.
     arm: Vec3,
-    /// Change of this separation per unit of `h`, mm; the next field is the change of the direction of support.
+    /// Change of `base` per unit of `h`, mm.
     rate: f64,
+    /// Change of the direction of support per unit of `h`.
     swing: Vec3,
+    /// Bound of the second-order term, mm per unit of `h^2`.
     bend: f64,
 }
 

@@ -21,8 +21,9 @@ const CACHES: [&str; 3] = ["--I1=32768,8,64", "--D1=49152,12,64", "--LL=2097152,
 const FLUSHED_BYTES: usize = 8 << 20;
 /// Number of elements.
 const ELEMENTS: usize = 1_000;
-/// Number of questions of each kind with warm caches; the next number is for cold caches.
+/// Number of questions of each kind with warm caches.
 const QUESTIONS: usize = 1_000;
+/// Number of questions of each kind with cold caches.
 const COLD_QUESTIONS: usize = 40;
 /// States of the caches and of the branch predictor in which questions are asked.
 const STATES: [&str; 3] = ["warm", "no order", "cold"];

@@ -16,9 +16,9 @@ const LAST: i16 = i16::MAX - 1;
 
 /// Greatest number of codes in a square, as a power of two: steps of 1/32 mm.
 const FINEST: i32 = 11;
-/// Number of codes in a millimetre of height, and the height in the middle of all codes, mm: codes reach from about
-/// -570 to 1470 mm.
+/// Number of codes in a millimetre of height.
 const HEIGHT_PER_MM: f32 = 32.0;
+/// Height of code 0, mm; codes reach from about -570 to 1470 mm.
 const MIDDLE_MM: f32 = 448.0;
 
 /// Codes of a box along x, y and z.
@@ -169,9 +169,9 @@ struct Axis {
     is_backward: bool,
     /// Code that stands for everything beyond it on the side from which the box comes.
     beyond: i16,
-    /// Bound of the box that comes first, in steps; the next field is the fraction of the path per step, 0 for an axis
-    /// at rest.
+    /// Bound of the box that comes first, in steps.
     lead: f32,
+    /// Fraction of the path per step; 0 for an axis at rest.
     pace: f32,
 }
 

@@ -24,16 +24,17 @@ pub(super) struct Strip {
     towards: i32,
     /// Number of the last band.
     last: i32,
-    /// Position of the lower line over the next band, from the first row or column of the area; the next two fields are
-    /// that of the upper line, and the advance of both per band. All are in units.
+    /// Position of the lower line over the next band, from the first row or column of the area, in units.
     low: i64,
+    /// Position of the upper line over the next band, from the first row or column of the area, in units.
     high: i64,
+    /// Advance of both lines per band, in units.
     slope: i64,
     /// Last row or column of the area.
     width: i32,
-    /// Length of the path until the box reaches the first band; the next field is the length of the whole path. Both
-    /// are in bands.
+    /// Length of the path until the box reaches the first band, in bands.
     ahead: f64,
+    /// Length of the whole path, in bands.
     run: f64,
     /// Length of the path while the box is over a band, in bands.
     over: f64,
