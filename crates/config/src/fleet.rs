@@ -32,7 +32,7 @@ pub enum SampleChoice {
     All,
 }
 
-/// A database.
+/// A database to which the rig sends its history.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 pub struct FleetTarget {
     /// `postgres://USER@HOST:PORT/DATABASE`, without password.

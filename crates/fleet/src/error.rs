@@ -124,7 +124,7 @@ pub enum FleetError {
         /// URL of the database, without password.
         target: String,
     },
-    /// The database did not answer in time.
+    /// The database did not answer within the time limit.
     #[error(
         "{target}: no answer in {seconds} s while {doing}. {}{}", Remedy::Network.text(), queue(*.queued)
     )]
@@ -138,14 +138,14 @@ pub enum FleetError {
         /// True while sending: what was not sent stays in the queue.
         queued: bool,
     },
-    /// The database said no, or the connection broke.
+    /// The database refused a statement, or the connection broke.
     #[error("{target}: {said} (while {doing}). {}{}", .remedy.text(), queue(*.queued))]
     Database {
         /// URL of the database, without password.
         target: String,
         /// What the program was doing.
         doing: &'static str,
-        /// What the database said.
+        /// Message of the database.
         said: String,
         /// What a person does about this error.
         remedy: Remedy,
@@ -188,7 +188,7 @@ pub enum FleetError {
     Fault {
         /// URL of the database, without password.
         target: String,
-        /// What the program said.
+        /// Message of the program.
         said: String,
     },
     /// There is no schema of this program.

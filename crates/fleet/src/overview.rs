@@ -40,7 +40,7 @@ const HOUR_US: i64 = 3_600_000_000;
 /// What [`watch`] asks about.
 #[derive(Debug, Clone)]
 pub struct Watched {
-    /// Database.
+    /// Database to ask.
     pub target: FleetTarget,
     /// Shifts of the plant; empty for a plant without shifts.
     pub shifts: Vec<Shift>,
@@ -67,7 +67,7 @@ pub async fn watch(watched: &Watched, seen: &Sender<Overview>) {
 /// The last question about what the rigs made.
 #[derive(Debug, Default)]
 struct DayTurns {
-    /// Time of the question.
+    /// Time of the last question.
     asked: Option<Instant>,
     /// True while the question has no answer.
     failed: bool,

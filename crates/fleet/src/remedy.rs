@@ -4,7 +4,7 @@ use crate::error::FleetError;
 use std::error::Error;
 use tokio_postgres::error::SqlState;
 
-/// What a person does.
+/// What a person does about an error, by the cause of the error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Remedy {
     /// The connection could not be made or broke.
@@ -13,9 +13,9 @@ pub enum Remedy {
     Password,
     /// The server does not let this user in.
     Access,
-    /// There is no such database.
+    /// The server has no database of this name.
     Database,
-    /// The user lacks a right.
+    /// The user lacks a right in the database.
     Role,
     /// The server is full.
     Room,
@@ -23,7 +23,7 @@ pub enum Remedy {
     Connections,
     /// The server ended the statement because it took too long.
     Slow,
-    /// Anything else that the server said.
+    /// Any other error of the server.
     Log,
     /// The schema is missing, foreign or too old.
     Schema,

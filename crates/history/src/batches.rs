@@ -37,7 +37,7 @@ pub struct BatchRecord {
 pub struct BatchSignal {
     /// Number of the part in the socket; `None` for the chamber.
     pub seq: Option<u64>,
-    /// Samples.
+    /// Samples of the signal.
     pub curve: CurveRecord,
 }
 
@@ -63,11 +63,11 @@ pub struct Batch {
 /// Temperature of the air during a batch; the members have equal lengths.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, ToSchema)]
 pub struct BatchAir {
-    /// Time, s.
+    /// Time since the begin of the batch, s.
     pub t_s: Vec<f64>,
     /// Set point of the chamber, C; null before its first ramp.
     pub set_c: Vec<Option<f64>>,
-    /// Reference thermometer, C.
+    /// Reading of the reference thermometer, C.
     pub reference_c: Vec<Option<f64>>,
     /// Slope of the reference thermometer over a minute, K/min; null in the first minute.
     pub rate_k_per_min: Vec<Option<f64>>,

@@ -84,7 +84,7 @@ pub fn verified(
     Ok(Ok(found))
 }
 
-/// The true bodies.
+/// The elements with their true bodies, for a check of each step.
 struct Whole<'a> {
     assembly: &'a Assembly,
     model: Model,

@@ -129,7 +129,7 @@ impl Part {
 /// Figures of a lot as a whole.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Summary {
-    /// Alarms raised.
+    /// Number of alarms that the lot raised.
     pub alarms: u64,
     /// Writes to any EEPROM during the lot; `None` when the run did not count them.
     pub eeprom_writes: Option<u64>,
@@ -156,7 +156,7 @@ pub struct BrokenPromise {
     pub after_parts: u64,
 }
 
-/// One lot.
+/// A lot on the simulated rig, with the truth about its parts.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lot {
     /// Seed of rig and lot.

@@ -18,9 +18,9 @@ pub const BEGIN_US: i64 = 1_769_903_940_000_000;
 
 /// A rig with a history of its own.
 pub struct Rig {
-    /// Name.
+    /// Name of the rig.
     pub name: String,
-    /// History.
+    /// Path of the history file.
     pub db: PathBuf,
     pub folder: tempfile::TempDir,
 }

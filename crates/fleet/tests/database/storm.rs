@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Size in CI.
+/// Size of the storm in CI: rigs, parts per rig, then least numbers of cuts, dropped senders and killed servers.
 const SMALL: [u64; 5] = [3, 200, 12, 10, 2];
 /// Most bytes that a connection carries before it is cut; a batch of 200 parts has more.
 const CUT_WITHIN: u64 = 40_000;

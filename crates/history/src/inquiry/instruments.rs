@@ -59,7 +59,7 @@ pub struct ShownFactor {
 /// A reference part, with its certificate and latest readings.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ReferencePartStatus {
-    /// Serial number.
+    /// Serial number of the reference part.
     pub serial: String,
     /// Nominal coil voltage of the recipes that use the part, V.
     pub nominal_v: f64,
@@ -81,7 +81,7 @@ pub struct CertifiedReading {
     pub certified: f64,
     /// Expanded uncertainty of the certificate, k = 2.
     pub certified_uncertainty: f64,
-    /// Latest reading, if any.
+    /// Latest reading; `None` without one.
     pub value: Option<f64>,
     /// Expanded uncertainty of the reading, k = 2.
     pub uncertainty: Option<f64>,

@@ -36,7 +36,7 @@ pub struct Outbox {
 /// What the history knows about a target, that is, a database to which it sends its rows.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Target {
-    /// Row number.
+    /// Row number in the table `target`.
     id: i64,
     /// UUID by which the target knows this file.
     pub identity: String,

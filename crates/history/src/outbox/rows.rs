@@ -20,7 +20,7 @@ const STATE: &str =
 struct Table {
     /// Kind of its entries in the queue.
     kind: &'static str,
-    /// Name.
+    /// Name of the table.
     table: &'static str,
     /// Column that the entries name.
     key: &'static str,

@@ -29,7 +29,7 @@ pub(super) struct Corner {
 /// Point of a simplex that is nearest to the origin.
 #[derive(Debug, Clone, Copy)]
 struct Nearest {
-    /// The point.
+    /// Vector from the origin to the nearest point, mm.
     v: Vec3,
     /// A direction along `v` that keeps its digits when `v` is tiny.
     normal: Vec3,
