@@ -86,7 +86,7 @@ impl Ordered {
     }
 }
 
-/// Returns the least number, 1, 2 or 5 times a power of ten, that is at least `step`; `None` unless `step` is above
+/// Returns the least number that is 1, 2 or 5 times a power of ten and at least `step`; `None` unless `step` is above
 /// zero.
 pub fn round_step(step: f64) -> Option<f64> {
     if !(step.is_finite() && step > 0.0) {

@@ -14,7 +14,7 @@ const CHECK_US: i64 = 15 * 60 * 1_000_000;
 /// Age of the oldest check that counts, µs: 30 days.
 const OLDEST_US: i64 = 30 * 86_400 * 1_000_000;
 
-/// Number of reference checks of a rig that the question reads, the latest.
+/// Number of the latest reference checks that the question reads per rig.
 const CHECKS: u32 = 100;
 
 /// A reading: value, uncertainty, instant.

@@ -14,7 +14,7 @@ use super::sweep::{Pace, Sweep};
 const FIRST: i16 = -i16::MAX;
 const LAST: i16 = i16::MAX - 1;
 
-/// Greatest number of codes in a square, as a power of two: steps of 1/32 mm.
+/// Binary logarithm of the greatest number of codes along a side of a square: steps of 1/32 mm.
 const FINEST: i32 = 11;
 /// Number of codes in a millimetre of height.
 const HEIGHT_PER_MM: f32 = 32.0;

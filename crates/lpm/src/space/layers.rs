@@ -33,7 +33,7 @@ static PASSED: [[u32; SHORT]; SHORT + 1] = {
     masks
 };
 
-/// Number of codes of height in a layer, as a power of two.
+/// Binary logarithm of the number of codes of height in a layer.
 const CODES: u32 = 8;
 /// Number of layers below code 0 of the height. A piece below -64 mm belongs to the lowest layer, a piece above 440 mm
 /// to the highest one.

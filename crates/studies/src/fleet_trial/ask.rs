@@ -141,7 +141,7 @@ fn quantiles(name: &str, times: &[f64]) -> Figure {
         .with("worst", ordered.quantile(1.0))
 }
 
-/// Returns the bytes of the tables of the server: its folder without the log of transactions.
+/// Returns the size of the server's tables, bytes: that of its data folder without the log of transactions.
 fn size(data: &Path) -> anyhow::Result<u64> {
     let mut bytes = 0;
     for entry in std::fs::read_dir(data.join("base"))? {
