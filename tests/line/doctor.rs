@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
 
-/// Lines of a rig whose ports exist; a character device stands for each.
+/// Lines of a rig whose ports exist: each port is a character device.
 const PORTS: &str = "--line measure=ports/measure --line motion=ports/motion";
 
 /// A folder with two ports.

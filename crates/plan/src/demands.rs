@@ -4,7 +4,7 @@ use crate::assembly::Assembly;
 use crate::direction::Direction;
 use crate::error::PlanError;
 
-/// Demands on a plan, by ids; an id that ends with `*` stands for every element whose id begins like it.
+/// Demands on a plan, by ids; an id that ends with `*` means every element whose id begins with the text before `*`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Demands {
     /// Elements that must come off; when empty, everything that does not stay.

@@ -3,7 +3,7 @@
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-/// First character of the text that stands for a JSON number that is not finite.
+/// First character of the text that replaces a JSON number that is not finite.
 const NOT_FINITE: char = '\u{1}';
 /// Greatest number of characters of a value that a message shows.
 const LONGEST_QUOTE: usize = 120;

@@ -91,8 +91,8 @@ impl Area {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Returns a mask of the squares, of a block of two by two, that the area has: bit 0 is the first, bit 1 the next
-    /// column, bit 2 the next row.
+    /// Returns a mask of the squares, of a block of two by two, that the area has. Bit 0: the first square, bit 1: the
+    /// next column, bit 2: the next row, bit 3: the next column in the next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
         let edge = |axis: usize| (self.high[axis] - self.low[axis]) as u32;

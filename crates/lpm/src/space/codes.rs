@@ -1,7 +1,7 @@
 //! Boxes in codes of 16 bits: places and heights in whole steps, so that one instruction compares eight of them.
 //!
 //! A place becomes a code by one function that never decreases, for stationary pieces and for the mover alike. So two
-//! boxes that overlap have overlapping codes; the reverse need not hold, because a code stands for a whole step.
+//! boxes that overlap have overlapping codes; the reverse need not hold, because a code covers a whole step.
 //! Places beyond the first and the last code get that code, which is as safe.
 
 use super::area::{Area, PITCH_MM};
@@ -90,7 +90,7 @@ impl Scale {
                 let place = steps + f64::from(old.middle[axis]) - f64::from(self.middle[axis]);
                 place * f64::from(self.per_mm[axis]) + wider
             };
-            // The first and the last code stand for everything beyond; the codes of a free lane stay too.
+            // The first and the last code cover everything beyond and stay unchanged, as do the codes of a free lane.
             let (low, high) = (extent.low[axis], extent.high[axis]);
             if (FIRST + 1..=LAST).contains(&low) {
                 let low = code(low, -1.0).floor();
@@ -167,7 +167,7 @@ pub(crate) struct Onset {
 struct Axis {
     /// Whether the box moves towards smaller codes, and reaches high codes first.
     is_backward: bool,
-    /// Code that stands for everything beyond it on the side from which the box comes.
+    /// Code that covers everything beyond it on the side from which the box comes.
     beyond: i16,
     /// Bound of the box that comes first, in steps.
     lead: f32,

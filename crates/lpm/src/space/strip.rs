@@ -12,7 +12,7 @@ use super::sweep::{SLACK_MM, Sweep};
 const UNIT: f64 = (1u64 << UNIT_BITS) as f64;
 const UNIT_BITS: u32 = 32;
 
-/// Number of squares that stands for infinity: no grid, and no line within a grid, reaches as far.
+/// Number of squares that replaces infinity: no grid, and no line within a grid, reaches as far.
 const BEYOND: f64 = (1 << 28) as f64;
 
 /// The bands of an area, in the order of the path. The box moves farther across the bands than along them.

@@ -42,8 +42,8 @@ pub struct Run {
     /// Sentences below the heading.
     #[serde(default)]
     pub about: String,
-    /// Program and arguments of the run, separated by spaces; the runner adds `--json`. The word `relayrig` stands for
-    /// this program.
+    /// Program and arguments of the run, separated by spaces; the runner adds `--json`. The word `relayrig` means this
+    /// program.
     pub command: String,
     /// Machine that the figures need.
     pub machine: Machine,
