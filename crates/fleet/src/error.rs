@@ -177,7 +177,7 @@ pub enum FleetError {
         target: String,
         /// Plant and rig asked for; `*` for any.
         found: String,
-        /// Plants and rigs that there are, the first twenty.
+        /// First twenty rigs of the database, each with its plant.
         expected: String,
     },
     /// A fault of this program ended an attempt to send.
