@@ -1,5 +1,5 @@
 //! Drives the simulated instruments with pyvisa-py and the drivers of pymeasure, and servers of other makers with
-//! `relayrig instrument`; `run` installs them from PyPI.
+//! `relayrig instrument`; the script `run` installs drivers and servers from PyPI.
 //!
 //! A test binary of its own, so that nothing else loads the computer beside instruments in real time.
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// One test at a time: the first installs, and none loads the computer beside another.
+/// Lock of the running test: the first test installs the packages, and no other test loads the computer meanwhile.
 static TURN: Mutex<()> = Mutex::new(());
 
 fn turn() -> MutexGuard<'static, ()> {
@@ -24,7 +24,7 @@ fn file(name: &str) -> PathBuf {
     root.join("tests/instruments").join(name)
 }
 
-/// Returns python with what `requirements.txt` names.
+/// Returns the command of a Python with the packages that `requirements.txt` names.
 fn python() -> Command {
     let mut python = Command::new(file("run"));
     python.arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("instruments"));

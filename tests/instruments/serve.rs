@@ -5,11 +5,11 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader, Lines};
 use std::process::{Child, ChildStdout, Command, Stdio};
 
-/// A program that runs; dropping kills it.
+/// A running program; dropping this value kills it.
 struct Running(Child);
 
 impl Running {
-    /// Starts a program; returns it with the lines that it says.
+    /// Starts a program; returns it with the lines that it prints.
     fn new(command: &mut Command) -> (Self, Lines<BufReader<ChildStdout>>) {
         let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
         let stdout = child.stdout.take().unwrap();
@@ -50,7 +50,7 @@ fn instrument(verb: &str, port: &str) -> Command {
     command
 }
 
-/// Runs a verb to its end; returns its exit status and its objects.
+/// Runs `relayrig instrument VERB` to its end; returns exit status and JSON lines.
 fn run(verb: &str, port: &str, words: &str) -> (i32, Vec<Value>) {
     let mut command = instrument(verb, port);
     let done = command.args(words.split(' ')).output().unwrap();
@@ -101,7 +101,7 @@ fn an_unknown_command_fails_with_the_servers_own_error() {
     assert_eq!(failure("unknown")["code"], "instrument");
     assert_eq!(failure("unknown")["args"]["number"], "-110");
     assert_eq!(failure("word")["code"], "malformed");
-    // A failure takes no value from the program behind it.
+    // The failed program takes no reply from the program after it.
     assert_eq!(row(&rows, "two")["found"], "1, 2");
 }
 
@@ -114,7 +114,7 @@ fn a_check_names_what_a_plain_server_lacks() {
     assert_eq!((status, rows.len()), (1, 1), "{rows:?}");
     assert_eq!(failure["code"], "link_down");
     assert_eq!(failure["args"]["detail"], "*ESE?: no reply within 500 ms");
-    // By its identity in place of *ESE it is in step.
+    // The profile `plain` asks for the identity instead of *ESE, so the link stays in step with the server.
     let words = "--json --profile plain --run two --run unknown --run two";
     let (status, rows) = run("check", &port, words);
     assert_eq!(status, 1, "{rows:?}");
@@ -129,7 +129,7 @@ fn monitor_outlives_the_server_and_finds_the_next() {
     let (server, port) = scpipy("0");
     let words = ["--query", "READ?", "--every", "10", "--seconds", "60"];
     let (_monitor, lines) = Running::new(instrument("monitor", &port).args(words));
-    // What stands behind the time of each line.
+    // The text after the time in each line.
     let mut found = lines.map(|it| it.unwrap().trim().split_once(' ').unwrap().1.to_owned());
     for due in 1..=3 {
         assert_eq!(found.next(), Some(due.to_string()));
@@ -144,7 +144,7 @@ fn monitor_outlives_the_server_and_finds_the_next() {
     assert_eq!(sent[0]["failure"]["code"], "disconnected");
 
     let (_server, _) = scpipy(&port);
-    // Its registers are those of an instrument that was switched off and on.
+    // The new server has the registers of an instrument that was switched off and on.
     let again = found.find(|it| !it.starts_with("The link is down"));
     let again = again.unwrap();
     assert!(again.contains("switched off and on"), "{again}");

@@ -25,7 +25,7 @@ model = "I-7021"
 init = true
 "#;
 
-/// Modules on a pseudo-terminal; dropping ends them.
+/// Modules on a pseudo-terminal; dropping this value ends them.
 struct Bench {
     shop: Workshop,
     sim: Child,
@@ -200,7 +200,7 @@ fn an_alarm_leaves_a_trace_named_in_the_log() {
     assert!(missing.status == 2 && missing.stderr.contains("nothing.trace"));
 }
 
-/// A process that dropping ends.
+/// A process; dropping this value ends it.
 struct Running(Child);
 
 impl Drop for Running {
@@ -214,7 +214,7 @@ impl Drop for Running {
 fn another_shell_monitors_a_running_controller() {
     let shop = Workshop::new("bus_follow");
     let mut demo = Running(shop.start_logging("demo --listen 127.0.0.1:0 --speed 1"));
-    // Held open to the end: the program must not find its log closed.
+    // Keeps the log open to the end, so that the program never writes to a closed pipe.
     let mut log = BufReader::new(demo.0.stderr.take().unwrap()).lines();
     let page = log.by_ref().map_while(Result::ok).find_map(|row| {
         let (_, rest) = row.split_once("page at ")?;

@@ -1,4 +1,4 @@
-//! `relayrig calibrate`: stores and verifies factors; a rig refuses lots on invalid ones.
+//! `relayrig calibrate` stores and verifies factors; a rig with invalid factors refuses lots.
 
 use crate::program::Workshop;
 

@@ -351,7 +351,7 @@ fn an_answer_has_every_key_in_both_verdicts() {
         found.sort_unstable();
         assert_eq!(found, keys);
     }
-    // Beyond the range of 25 mm there is no number; at a distance of 4 a margin of 4 is reached.
+    // Beyond the range of 25 mm there is no number; a distance of 4 mm violates a margin of 4 mm.
     assert!(answers[1]["clearance_mm"].is_null() && answers[1]["t_stop"].is_null());
     assert_eq!(answers[2]["verdict"].as_str(), Some("blocked"));
     assert!((answers[2]["clearance_mm"].as_f64().unwrap() - 4.0).abs() < 1e-9);
@@ -379,7 +379,7 @@ fn the_examples_of_the_help_work_as_they_stand() {
 fn check_accepts_the_scene_of_the_rig() {
     let workshop = Workshop::new("check-rig");
     let rig = include_str!("../../config/scene.toml");
-    // The capitals and the mark come from editors of another world.
+    // Some systems write file names in capitals, and some editors a byte order mark.
     workshop.write(
         "SCENE.TOML",
         &format!("\u{feff}{rig}\n[[movers]]\nid = \"jaw\"\nkind = \"block\"\nhalf = [1, 2, 3]\n"),
@@ -389,7 +389,7 @@ fn check_accepts_the_scene_of_the_rig() {
         .run("check --scene SCENE.TOML --moves moves.jsonl")
         .with_status(1);
     assert!(said.stdout.starts_with("m1  blocked by "), "{said}");
-    // Scenes may say that they belong to a rig without describing it.
+    // A scene may name actuators of its rig without describing them.
     let riding = SCENE.replacen(
         "\"height\": 30",
         "\"height\": 30, \"rides\": \"clamp_left\"",

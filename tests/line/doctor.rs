@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{PermissionsExt, symlink};
 
-/// Lines of a rig whose ports exist; a character device stands for each.
+/// Lines of a rig whose ports exist: each port is a character device.
 const PORTS: &str = "--line measure=ports/measure --line motion=ports/motion";
 
 /// A folder with two ports.
@@ -33,7 +33,7 @@ fn examined(workshop: &Workshop, words: &str, check: &str) -> (i32, Vec<Value>) 
     (said.status, found)
 }
 
-/// Checks that the doctor finds one fault of this kind with `part` in what it found.
+/// Checks that the doctor reports one fault of this check, and that its text contains `part`.
 fn assert_fault(workshop: &Workshop, words: &str, (check, part): (&str, &str)) {
     let (status, found) = examined(workshop, words, check);
     assert_eq!(status, 1);

@@ -44,7 +44,7 @@ impl Page {
         stream.read_to_string(&mut answer).unwrap();
         let (head, body) = answer.split_once("\r\n\r\n").unwrap();
         let status = head.split(' ').nth(1).unwrap().parse().unwrap();
-        // A list comes in pieces, each with its length in a line of its own.
+        // A list comes in chunks (HTTP chunked encoding), each after a line with its length.
         let body = match head.contains("chunked") {
             true => body.lines().skip(1).filter(|it| !is_length(it)).collect(),
             false => body.to_owned(),

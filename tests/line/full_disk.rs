@@ -5,8 +5,8 @@ use crate::program::Workshop;
 use crate::serve::Served;
 use std::process::Command;
 
-/// Largest file that the program may write, in blocks of the shell (512 or 1024 bytes): room for the reference parts and a
-/// few dozen parts.
+/// Largest file that the program may write, in blocks of the shell (512 or 1024 bytes): room for the reference parts
+/// and a few dozen parts.
 const BLOCKS: u32 = 2400;
 
 #[test]

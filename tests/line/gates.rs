@@ -94,7 +94,8 @@ fn too_many_failed_parts_hold_the_lot() {
     let workshop = with_lot("gates_discarded", "discard_limit_pct = 5.0\n");
     workshop.change("config/sim.toml", "rate_pct = 4.0", "rate_pct = 75.0");
     run(&workshop, 40, "").with_status(3);
-    // Two of forty are 5 %; the third ends the unattended run. If it is on its way to the bin then, `bin_beam` follows.
+    // Two of forty are 5 %; the third failed part ends the unattended run. If this part is still on its way to the bin,
+    // the alarm `bin_beam` follows.
     let told = workshop.texts("SELECT code FROM alarm WHERE code != 'bin_beam'");
     assert_eq!(told, ["lot_discard_limit"]);
     let failed = "SELECT count(*) FROM part WHERE kind = 'lot' AND verdict = 'fail'";
@@ -213,7 +214,7 @@ fn worn_probes_alarm_once_and_the_counter_survives() {
     run(&workshop, 3, "").with_status(0);
     assert_eq!(workshop.texts("SELECT code FROM alarm"), ["probes_worn"]);
     let touches = || workshop.count("SELECT count FROM wear WHERE name = 'probe_touches'");
-    // References in the empty nest, five reference parts, three of the lot.
+    // One touch for the references in the empty nest, five for reference parts, three for parts of the lot.
     assert_eq!(touches(), 9);
     run_lot(&workshop, "B", 1, "").with_status(0);
     assert_eq!(touches(), 16);

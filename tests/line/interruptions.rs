@@ -8,11 +8,11 @@ use std::process::{Child, Command};
 /// Command of a lot without end.
 const ENDLESS: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --seed 1 --json";
 
-/// End of a lot.
+/// Result of an interrupted lot.
 struct Ended {
     /// Exit status; `None` after a kill.
     status: Option<i32>,
-    /// Standard output.
+    /// JSON lines on stdout.
     told: Vec<Value>,
 }
 

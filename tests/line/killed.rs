@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStdout, Command};
 
-/// The simulated rig on pseudo-terminals, printing changes of its outputs; dropping kills it.
+/// The simulated rig on pseudo-terminals, printing changes of its outputs; dropping this value kills the rig.
 pub struct Rig {
     process: Child,
     told: BufReader<ChildStdout>,
@@ -115,12 +115,12 @@ fn number(value: &toml::Value) -> f64 {
     }
 }
 
-/// Most starts of a lot: on a busy computer the controller may be late for a watchdog or end with an alarm, which proves
-/// nothing.
+/// Most starts of a lot: on a busy computer the controller may be late for a watchdog or end with an alarm, and such a
+/// start proves nothing.
 pub const TRIES: usize = 20;
 
-/// Starts a lot and kills its controller while the coil is driven. Returns the expired watchdogs, provided that all expired
-/// after the kill.
+/// Starts a lot and kills its controller while the coil is driven. Returns the expired watchdogs, provided that all of
+/// them expired after the kill.
 fn killed_in_the_middle(workshop: &Workshop, attempt: usize, watched: usize) -> Option<Vec<Value>> {
     let mut rig = Rig::start(workshop, "");
     // Each attempt has its own history, so that an open lot does not refuse the next one.

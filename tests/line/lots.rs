@@ -267,7 +267,7 @@ fn every_part_has_rows_down_to_raw_replies() {
 fn reference_parts_come_first_and_end_in_retest() {
     let workshop = &twelve().workshop;
     assert!(workshop.count("SELECT count(*) FROM part WHERE kind = 'golden'") > 0);
-    // The calibration repeats their fine ramps three times, and nothing else.
+    // The calibration repeats only the fine ramps of reference parts, three times.
     let other = "SELECT count(*) FROM measurement JOIN parameter ON parameter.id = parameter_id
         JOIN part ON part.id = part_id
         WHERE kind = 'golden' AND attempt <> iif(key LIKE '%voltage_v', 4, 1)";

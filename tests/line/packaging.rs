@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 /// Highest exposure of the service that `systemd-analyze security` may compute, 0 to 10.
 const EXPOSURE: f64 = 3.0;
 
-/// Runs a program; `None` when it is missing, which goes to the terminal past the capture of the test.
+/// Runs a program; `None` when the program is missing. Reports that on the terminal, past the capture of the test.
 fn output(program: &str, arguments: &[&str]) -> Option<Output> {
     match Command::new(program).args(arguments).output() {
         Ok(output) => Some(output),
@@ -21,7 +21,7 @@ fn output(program: &str, arguments: &[&str]) -> Option<Output> {
     }
 }
 
-/// Returns what a program printed on both streams; fails when it failed.
+/// Returns what a program printed on both streams; fails when the program failed.
 fn said(output: &Output) -> String {
     let text = [&output.stdout, &output.stderr].map(|it| String::from_utf8_lossy(it).into_owned());
     let text = text.concat();

@@ -50,7 +50,7 @@ fn models() -> BTreeSet<&'static str> {
     all.filter(|model| *model != NEVER).collect()
 }
 
-/// Returns the commands that `request` may be for this model.
+/// Returns the commands of this model that `request` can mean.
 fn meant(model: &str, request: &str) -> Vec<Command> {
     let model = Model::of_name(model).unwrap();
     let mut meant = decode_request(request.as_bytes());

@@ -1,10 +1,11 @@
 //! Recorded rows: six recipes, five seeds, forty parts each.
 //!
 //! A change that only moves code leaves every value, uncertainty, verdict, bin and time unchanged. A change of the
-//! measurement records the rows again with `RECORD_ROWS=1 cargo test --test line rows`, and its commit gives the reason.
+//! measurement records the rows again with `RECORD_ROWS=1 cargo test --test line rows`, and its commit gives the
+//! reason.
 //!
-//! A recorded file has a digest of the elementary functions of the computer that made it. With the same digest rows must be
-//! equal bit for bit, with another one numbers may differ by 1e-9.
+//! A recorded file has a digest of the elementary functions of the computer that made it. With the same digest rows
+//! must be equal bit for bit, with another digest numbers may differ by 1e-9.
 
 use crate::program::Workshop;
 use rusqlite::{Connection, Row};

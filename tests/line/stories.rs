@@ -1,9 +1,9 @@
-//! Stories of troubles: a script in `stories/NAME.txt`, the expected course in `NAME.told`. Those of another rig lie in a
-//! folder of their own.
+//! Stories of troubles: a script in `stories/NAME.txt`, the expected course in `NAME.told`. Stories of another rig lie
+//! in a folder of their own.
 //!
-//! The course must match byte for byte. In every story nothing touches, every body lies where its row says, and every judged
-//! part has its row. `RELAYRIG_RENEW=1` in the environment rewrites the expected courses: read the difference before
-//! committing it.
+//! The course must match byte for byte. In every story no two bodies touch that must not, every body lies where its row
+//! says, and every judged part has its row. `RELAYRIG_RENEW=1` in the environment rewrites the expected courses: read
+//! the difference before committing it.
 
 use crate::program::{Workshop, objects};
 use std::fs;
@@ -126,7 +126,7 @@ fn the_first_alarm_names_a_module_that_restarts() {
     }
 }
 
-/// Checks twelve instants of each; `study stop` takes any number.
+/// Checks twelve instants of a cycle and twelve of homing; `study stop` takes any number.
 #[test]
 fn emergency_stop_at_any_instant_switches_off_in_time() {
     let workshop = Workshop::new("emergency-stops");

@@ -67,8 +67,8 @@ fn a_batch_of_forty_agrees_with_the_truth() {
     }
 }
 
-/// Returns the least number of values out of `all` whose U must cover the truth: an honest U, which covers 93 % or more,
-/// falls below it in less than one lot of a hundred.
+/// Returns the least number of values out of `all` whose U must cover the truth: an honest U, which covers 93 % or
+/// more, falls below this number in less than one lot of a hundred.
 fn least_covered(all: usize) -> usize {
     let (mut chance, mut below) = (0.93_f64.powi(all as i32), 1.0);
     for missed in 0..=all {
@@ -82,8 +82,8 @@ fn least_covered(all: usize) -> usize {
 }
 
 /// Returns the range of the mean square of `all` normal values, three standard deviations to either side (Wilson and
-/// Hilferty): a mean square of errors in standard uncertainties outside of it shows a U that is stated too small or too
-/// large.
+/// Hilferty). If the errors, in units of their standard uncertainty, have a mean square outside this range, U is stated
+/// too small or too large.
 fn chi_squared(all: usize) -> [f64; 2] {
     let share = 2.0 / (9.0 * all as f64);
     [-3.0, 3.0].map(|z| (1.0 - share + z * share.sqrt()).powi(3))
@@ -101,7 +101,7 @@ const RECIPE: &str = "config/rigs/thermostat/recipes/thermostat-ksd9700.toml";
 const RIG: &str = "config/rigs/thermostat/rig.toml";
 const CERTIFIED: &str = "rack = \"rack.toml\"";
 
-/// Returns what a run of one part says that its configuration is refused for.
+/// Runs a lot of one part; returns the reason for which the program refuses the configuration.
 fn refused(workshop: &Workshop) -> String {
     let said = workshop.run(&format!("{RUN} --lot A --count 1 --seed 1"));
     said.with_status(2).stderr.clone()
@@ -164,7 +164,7 @@ first_order = { gain_k = 22.0, time_constant_s = 52.0, delay_s = 4.5 }
 
 [map]";
 
-/// Bad input: file, text in it, text in its place, and what the program says of it.
+/// Bad input: file, text in the file, text that replaces it, and the message of the program.
 const BAD: [[&str; 4]; 10] = [
     [
         RIG,

@@ -103,7 +103,8 @@ fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
     lost
 }
 
-/// Checks that status 3 has the same cause in summary and history, an alarm of the run, and other statuses none.
+/// Returns a message unless summary and history name the same cause, and this cause is an alarm of the run exactly when
+/// the status is 3.
 fn cause_otherwise(workshop: &Workshop, said: &Said) -> Option<String> {
     let summary = said.objects().pop()?;
     let cause = summary["cause"]["code"].as_str().unwrap_or_default();

@@ -6,7 +6,7 @@ use crate::program::{ATTEMPTS, Workshop};
 #[test]
 fn a_vanished_port_ends_the_lot_naming_the_line() {
     let workshop = Workshop::new("unplugged-in-real-time");
-    // However late the controller starts on this machine, the port is gone while it works, or before.
+    // However late the controller starts on this machine, the port is gone while the controller works, or before.
     let _rig = Rig::start(&workshop, "--fault port_lost=motion@3..600");
     let lines = "--line measure=ports/measure --line motion=ports/motion";
     let run = format!("run --lot A --recipe jzc-22f-012 --json {lines}");

@@ -153,7 +153,7 @@ impl File {
         self.needed(path, entries, &names, needed, faults);
     }
 
-    /// Checks entries that all have one form: those in `needed` must exist; others may exist when names are `free`.
+    /// Checks entries that all have one form: names in `needed` must exist; other names are allowed when `free`.
     fn named(
         &self,
         path: &str,
@@ -231,7 +231,7 @@ impl File {
         faults.push(self.value_error(path, node.describe(), expected));
     }
 
-    /// Returns the entries of a table; reports anything else and returns none.
+    /// Returns the entries of a table. For any other value, reports a fault and returns no entries.
     fn entries<'a>(&self, path: &str, node: &'a Node, faults: &mut Faults) -> &'a [(String, Node)] {
         let Value::Table(entries) = &node.value else {
             faults.push(self.value_error(path, node.describe(), "a table".to_owned()));

@@ -1,5 +1,5 @@
-//! Loads `fleet.toml`, the databases that collect the histories of many rigs. Without the file, or without a target in
-//! it, nothing leaves the rig.
+//! Loads `fleet.toml`, which names the databases that collect the histories of many rigs. Without the file, or without
+//! a target, the rig sends nothing.
 
 use super::error::ConfigError;
 use super::folder::Folder;
@@ -23,24 +23,24 @@ pub enum TlsChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SampleChoice {
-    /// None.
+    /// No raw replies.
     #[default]
     None,
     /// Raw replies of parts that did not pass.
     Rejects,
-    /// All.
+    /// All raw replies.
     All,
 }
 
-/// A database.
+/// A database to which the rig sends its history.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 pub struct FleetTarget {
     /// `postgres://USER@HOST:PORT/DATABASE`, without password.
     pub url: String,
-    /// Encryption.
+    /// Encryption of the link.
     #[serde(default)]
     pub tls: TlsChoice,
-    /// Certificate of the authority that signed that of the server, PEM.
+    /// Path of the certificate (PEM) of the authority that signed the server's certificate.
     pub ca: Option<PathBuf>,
     /// Raw replies to send.
     #[serde(default)]
@@ -53,11 +53,11 @@ pub struct FleetTarget {
 /// A shift of the plant, in local time of each day.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 pub struct Shift {
-    /// Name.
+    /// Name of the shift.
     pub name: String,
     /// Begin, `HH:MM`.
     pub start: String,
-    /// End, `HH:MM`; at or before `start`: on the next day.
+    /// End, `HH:MM`; an end at or before `start` is on the next day.
     pub end: String,
 }
 
@@ -65,7 +65,7 @@ pub struct Shift {
 const DAY_MIN: u16 = 24 * 60;
 
 impl Shift {
-    /// Returns begin and end in minutes from the midnight before it begins; the end is at most a day after the begin.
+    /// Returns start and end, minutes from the midnight before the start; the end is at most a day after the start.
     #[must_use]
     pub fn minutes(&self) -> (u16, u16) {
         let [start, end] = [&self.start, &self.end].map(|it| minute(it).unwrap_or_default());
@@ -95,7 +95,7 @@ pub struct FleetSettings {
     /// Name of the rig; not empty when there is a target.
     #[serde(default)]
     pub rig: String,
-    /// Databases.
+    /// Databases to which the rig sends its history.
     #[serde(default, rename = "target")]
     pub targets: Vec<FleetTarget>,
     /// Shifts of the plant.

@@ -16,7 +16,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// Files of one configuration. Clones share the files.
 #[derive(Debug, Clone)]
 pub enum Folder {
-    /// A directory.
+    /// Directory on disk.
     Directory(PathBuf),
     /// Files in memory: a revision of a recipe lasts until the program ends.
     Memory(Memory),
@@ -33,7 +33,7 @@ pub struct Memory {
 #[derive(Debug)]
 struct Kept {
     text: String,
-    /// `None` for a file that was compiled in.
+    /// Time at which a revision saved the file; `None` for a file that was compiled in.
     saved_at: Option<SystemTime>,
 }
 

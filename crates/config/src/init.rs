@@ -16,7 +16,7 @@ use thiserror::Error;
 /// Error: no configuration was written.
 #[derive(Debug, Error)]
 pub enum InitError {
-    /// The directory has entries; it stays as it is.
+    /// The directory has entries and stays unchanged.
     #[error("{}: found a folder that is not empty, expected a new or an empty one; nothing was written", dir.display())]
     NotEmpty {
         /// Path of the directory.

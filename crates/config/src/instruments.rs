@@ -37,7 +37,7 @@ pub fn instrument_names(folder: &Folder) -> Vec<String> {
     folder.stems("instruments")
 }
 
-/// Returns the folder whose profiles a configuration uses: `folder`, or the copy in the program when it has none.
+/// Returns the folder whose profiles a configuration uses: `folder`, or the built-in one when `folder` has no profiles.
 pub fn folder_of_profiles(folder: &Folder) -> Folder {
     match instrument_names(folder).is_empty() {
         true => Folder::built_in(),

@@ -1,4 +1,4 @@
-//! Configuration: reads and checks the files of a plant, and makes the settings of each crate of them.
+//! Configuration: reads and checks the files of a plant, and makes the settings of each crate from these files.
 //!
 //! | file | holds | becomes |
 //! |---|---|---|

@@ -1,5 +1,5 @@
 //! Loads `lot.toml`, the gates of a lot: reference checks, reject-rate limit, first articles, wear limits, and the
-//! source of serial numbers. Without the file a lot has none of them.
+//! source of serial numbers. Without the file a lot has none of these.
 
 use super::error::ConfigError;
 use super::folder::Folder;

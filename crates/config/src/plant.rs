@@ -41,13 +41,13 @@ pub struct Plant {
     pub accuracy: AccuracySettings,
     /// How long a calibration stays valid.
     pub calibration: CalibrationSettings,
-    /// Reference parts; none when `rig.toml` names no file of them.
+    /// Reference parts; empty when `rig.toml` names no file of reference parts.
     pub reference_parts: ReferenceSet,
-    /// Certificate of thermometer chain and sockets; `None` when `rig.toml` names none.
+    /// Certificate of thermometer chain and sockets; `None` when `rig.toml` names no certificate.
     pub certificate: Option<Certificate>,
     /// Gates of a lot: reference checks, reject-rate limit, first articles, wear limits.
     pub lot: LotSettings,
-    /// Longest outage of the history, and how long the traces of alarms are kept.
+    /// Longest time for which writing the history may fail, and how long the traces of alarms are kept.
     pub history: HistorySettings,
     /// Code reader at the pocket, if the rig has one.
     pub serial_reader: Option<SerialReaderSettings>,
@@ -71,7 +71,7 @@ fn usual_timeout_ms() -> f64 {
     1000.0
 }
 
-/// Longest outage of the history, and how long the traces of alarms beside it are kept.
+/// Settings of the history and of the traces of alarms beside its file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct HistorySettings {
@@ -198,7 +198,7 @@ impl Plant {
 }
 
 impl File {
-    /// Parses a text; messages name it as the file at `path`.
+    /// Parses a text; messages name `path` as its file.
     pub fn parse(path: PathBuf, text: String) -> Result<Self, ConfigError> {
         match Node::parse(&text) {
             Ok(root) => Ok(Self { path, text, root }),
@@ -246,7 +246,7 @@ fn load_reference_parts(folder: &Folder, name: &str) -> Result<ReferenceSet, Con
     Ok(set)
 }
 
-/// Loads the certificate of the rack; fails when it has other sockets than the rack.
+/// Loads the certificate of the rack; fails when the certificate names other sockets than the rack has.
 fn load_certificate(
     folder: &Folder,
     name: &str,
@@ -260,7 +260,7 @@ fn load_certificate(
     Ok(certificate)
 }
 
-/// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an
+/// Loads the scene. The guard refuses unknown keys, bodies without size, and actuators whose stroke is blocked in an
 /// empty rig.
 pub(super) fn load_scene(folder: &Folder) -> Result<GuardSettings, ConfigError> {
     let file = folder.file("scene.toml", "the bodies around the nest")?;
@@ -300,7 +300,7 @@ fn check_axis(axis: &AxisTable, scene: &GuardSettings, rig: &File) -> Result<(),
 }
 
 impl File {
-    /// Makes the error for a text that does not fit its type of settings.
+    /// Makes the error for a file that cannot be converted to its settings.
     fn type_mismatch(&self, error: &toml::de::Error) -> ConfigError {
         let fault = not_toml(&self.text, error);
         let key = self.label(&self.root.path_at(fault.line));

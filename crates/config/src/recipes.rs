@@ -61,10 +61,10 @@ struct RecipeRule {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Approval {
-    /// None is required.
+    /// No engineer.
     #[default]
     None,
-    /// Two: one who saved the text or approved it, and a second one who approved it.
+    /// Two engineers: one who saved or approved the text, and a second one who approved the text.
     SecondPerson,
 }
 

@@ -1,4 +1,4 @@
-//! Reads JSON and query strings strictly: for a type that denies unknown fields it refuses an unknown member and names
+//! Reads JSON and query strings strictly: for a type that denies unknown fields, refuses an unknown member and names
 //! the nearest known one. Other errors name their member too.
 
 use super::nearest::{nearest, suggestion};
@@ -137,7 +137,7 @@ impl Error for Unreadable {
     }
 }
 
-/// A JSON value from which serde reads a type. It keeps repeated members, so that the type refuses them.
+/// A JSON value from which serde reads a type; keeps repeated members, so that the type refuses them.
 #[derive(Clone, Deserialize)]
 #[serde(untagged)]
 enum Json {

@@ -20,7 +20,7 @@ CREATE TEMP TABLE IF NOT EXISTS staging_event (id bigint, kind text COLLATE \"C\
   ON COMMIT DELETE ROWS;
 CREATE TEMP TABLE IF NOT EXISTS fresh (id bigint PRIMARY KEY) ON COMMIT DELETE ROWS;";
 
-/// Moves staged rows. A part that the database has already brings no measurements; its differences become a change.
+/// Moves staged changes of parts, reasons and curves to their tables.
 const MOVE: &str = "
 INSERT INTO relayrig.part_change SELECT s.* FROM staging_part_change AS s ON CONFLICT DO NOTHING;
 INSERT INTO relayrig.reason SELECT * FROM staging_reason ON CONFLICT DO NOTHING;
@@ -35,7 +35,7 @@ const MEASUREMENTS: &str =
 const SAMPLES: &str = "INSERT INTO relayrig.sample SELECT s.* FROM staging_sample AS s";
 const ONLY_FRESH: &str = " JOIN fresh ON fresh.id = s.part_id";
 
-/// Stores how parts that the database had already differ from those of the rig now; `$1` is the event.
+/// Stores a change for each part that the database had already, if the part of the rig differs now; `$1` is the event.
 const DIFFERING: &str = "
 INSERT INTO relayrig.part_change
   SELECT $1, s.id, s.judged_at_us, s.verdict, s.bin, s.reasons, s.cycle_s, s.landed_bin, s.landed_at_us
@@ -70,12 +70,12 @@ pub(crate) async fn prepare(client: &Client) -> Result<(), Error> {
     client.batch_execute(STAGING).await
 }
 
-/// Makes numbers of a file unique over all rigs.
+/// Makes row numbers of a file unique over the files of all rigs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Base(i64);
 
 impl Base {
-    /// Returns the base of a history, which puts its number above the lower 40 bits.
+    /// Returns the base of a history: the number of the history, shifted left by 40 bits.
     pub(crate) fn of(history: i32) -> Self {
         assert!(history > 0, "a history without its number");
         Self(i64::from(history) << 40)
@@ -88,7 +88,7 @@ impl Base {
     }
 }
 
-/// Writes the rows. Returns the number of runs whose numbers belong to other runs; with any, the caller must not commit.
+/// Writes the rows. Returns the number of runs whose numbers belong to other runs; above 0, the caller must not commit.
 pub(crate) async fn write(tx: &Transaction<'_>, history: i32, batch: &Batch) -> Result<i64, Error> {
     let base = Base::of(history);
     let parameters = parameters(tx, batch).await?;
@@ -246,7 +246,7 @@ fn judged(part: &PartRow) -> (i64, i64) {
     (part.id, part.judged_at_us)
 }
 
-/// Returns a count of attempts or samples.
+/// Converts a count of attempts or samples; panics beyond 2^31 - 1.
 fn small(count: i64) -> i32 {
     let small = i32::try_from(count);
     assert!(small.is_ok(), "a count of {count}");

@@ -1,7 +1,7 @@
 //! Asks a history file and a database the same random questions, which must have the same answers to the last digit.
 //!
-//! Filters combine everything that a question of the command line can; their values come from the parts themselves, so that
-//! most answers are not empty. A refusal is an answer too.
+//! Filters combine all options that the command line has; their values come from the parts themselves, so that most
+//! answers are not empty. A refusal is an answer too.
 
 mod draw;
 mod question;
@@ -24,8 +24,8 @@ pub struct Asked {
     pub different: Vec<String>,
 }
 
-/// Asks `count` questions, drawn from `seed`; judges again by one of `recipes`. The database must have all rows of the file
-/// and answer for this rig alone.
+/// Asks `count` questions, drawn from `seed`; a question that judges parts again uses one of `recipes`. The database
+/// must have all rows of the file and answer for this rig alone.
 ///
 /// # Errors
 /// Fails when the file cannot be read, or has no part.

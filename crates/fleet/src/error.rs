@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Result of this crate.
 pub type Result<T> = std::result::Result<T, FleetError>;
 
-/// Why the database refuses this file, though it can be reached. Nothing was written.
+/// Why the database refuses this file, though the database can be reached. Nothing was written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// Another file sends under this name.
@@ -16,7 +16,7 @@ pub enum Refusal {
          another name in fleet.toml, or, if it replaces the other, run `relayrig fleet push --take-over`"
     )]
     OtherFile {
-        /// Plant and name.
+        /// Plant and name of the rig.
         rig: String,
         /// Computer of the other file.
         host: String,
@@ -31,7 +31,7 @@ pub enum Refusal {
          this is the right file, run `relayrig fleet push --take-over`"
     )]
     Superseded {
-        /// Plant and name.
+        /// Plant and name of the rig.
         rig: String,
         /// Computer of the later file.
         host: String,
@@ -47,7 +47,7 @@ pub enum Refusal {
          continue with this one as a new epoch: `relayrig fleet push --take-over`"
     )]
     FileOlder {
-        /// Plant and name.
+        /// Plant and name of the rig.
         rig: String,
         /// Batches that the database has.
         there: i64,
@@ -55,7 +55,7 @@ pub enum Refusal {
         here: i64,
         /// UUID of the last run that the database has.
         run: String,
-        /// Parts of this run there.
+        /// Number of parts that the database has of this run.
         parts: i64,
     },
     /// The database has fewer batches than it has confirmed.
@@ -64,7 +64,7 @@ pub enum Refusal {
          another database. Run `relayrig fleet push --again`, which sends what it lacks"
     )]
     DatabaseOlder {
-        /// Plant and name.
+        /// Plant and name of the rig.
         rig: String,
         /// Batches that the database has.
         there: i64,
@@ -77,7 +77,7 @@ pub enum Refusal {
          hand or merged; continue as a new epoch: `relayrig fleet push --take-over`"
     )]
     RunDiffers {
-        /// Plant and name.
+        /// Plant and name of the rig.
         rig: String,
         /// Number of such runs.
         count: i64,
@@ -124,7 +124,7 @@ pub enum FleetError {
         /// URL of the database, without password.
         target: String,
     },
-    /// The database did not answer in time.
+    /// The database did not answer within the time limit.
     #[error(
         "{target}: no answer in {seconds} s while {doing}. {}{}", Remedy::Network.text(), queue(*.queued)
     )]
@@ -133,28 +133,28 @@ pub enum FleetError {
         target: String,
         /// What the program was doing.
         doing: &'static str,
-        /// How long it waited, seconds.
+        /// How long the program waited, seconds.
         seconds: u64,
         /// True while sending: what was not sent stays in the queue.
         queued: bool,
     },
-    /// The database said no, or the connection broke.
+    /// The database refused a statement, or the connection broke.
     #[error("{target}: {said} (while {doing}). {}{}", .remedy.text(), queue(*.queued))]
     Database {
         /// URL of the database, without password.
         target: String,
         /// What the program was doing.
         doing: &'static str,
-        /// What the database said.
+        /// Message of the database.
         said: String,
-        /// What to do.
+        /// What a person does about this error.
         remedy: Remedy,
         /// True while sending: what was not sent stays in the queue.
         queued: bool,
         /// Error of the client library, of which `said` is the text.
         error: tokio_postgres::Error,
     },
-    /// Made-up histories do not go beside real ones.
+    /// The database for made-up histories has real ones.
     #[error(
         "{target}: found rigs of the plant {site}, expected a database without real rigs for made-up ones"
     )]
@@ -164,7 +164,7 @@ pub enum FleetError {
         /// A plant with real rigs in the database.
         site: String,
     },
-    /// The program has no thread for the connection.
+    /// The runtime of the connection could not be started.
     #[error("no runtime for the connection: {error}")]
     Runtime {
         /// Error of the system.
@@ -177,7 +177,7 @@ pub enum FleetError {
         target: String,
         /// Plant and rig asked for; `*` for any.
         found: String,
-        /// Plants and rigs that there are, the first twenty.
+        /// First twenty rigs of the database, each with its plant.
         expected: String,
     },
     /// A fault of this program ended an attempt to send.
@@ -186,9 +186,9 @@ pub enum FleetError {
          report the log"
     )]
     Fault {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
-        /// What the program said.
+        /// Message of the program.
         said: String,
     },
     /// There is no schema of this program.
@@ -224,13 +224,13 @@ pub enum FleetError {
     Refused {
         /// URL of the database, without password.
         target: String,
-        /// Why.
+        /// Reason of the refusal.
         refusal: Refusal,
     },
     /// The shifts of the plant have no place in the calendar.
     #[error("{target}: the shifts of fleet.toml cannot be laid out: {why}")]
     Shifts {
-        /// Database.
+        /// URL of the database, without password.
         target: String,
         /// What is wrong.
         why: String,
@@ -253,7 +253,7 @@ impl FleetError {
         }
     }
 
-    /// Adds to an error of a push that nothing is lost.
+    /// Adds to an error of a push that the rows stay in the queue.
     pub(crate) fn while_sending(mut self) -> Self {
         if let Self::TimeOut { queued, .. } | Self::Database { queued, .. } = &mut self {
             *queued = true;
@@ -315,7 +315,7 @@ const fn queue(queued: bool) -> &'static str {
 
 /// Names the database and the step in errors of the client library.
 pub(crate) trait Doing<T> {
-    /// Turns an error into one of this crate.
+    /// Converts an error of the client library to one of this crate.
     fn doing(self, target: &str, doing: &'static str) -> Result<T>;
 }
 

@@ -1,5 +1,5 @@
-//! Fills a database with the made-up histories of many rigs, for trying questions at size. Each rig is one transaction; the
-//! server draws the values, so that nothing but a few numbers goes over the network.
+//! Fills a database with made-up histories of many rigs, to try questions at size. Each rig is one transaction; the
+//! server draws the values, so that only a few numbers go over the network.
 
 use crate::error::{FleetError, Result};
 use crate::link::Link;
@@ -7,7 +7,7 @@ use config::FleetTarget;
 
 /// Plant of the made-up rigs.
 pub const SITE: &str = "made-up";
-/// Measurements of a part.
+/// Number of measurements of a part.
 pub const VALUES: i64 = 25;
 const DOING: &str = "making up histories";
 
@@ -33,7 +33,7 @@ WITH made AS (INSERT INTO relayrig.rig (site, rig) VALUES ($1, $2) RETURNING id)
 INSERT INTO relayrig.history (rig_id, epoch, uuid, host, program)
   SELECT id, 1, gen_random_uuid()::text, 'made up', 'relayrig' FROM made RETURNING id";
 
-/// Makes the runs of history `$1` with `$2` parts from `$3` on, one each `$4` microseconds.
+/// Makes the runs of history `$1` with `$2` parts from the instant `$3` on, a part every `$4` microseconds.
 const RUNS: &str = "
 INSERT INTO relayrig.run (id, history_id, uuid, lot, number, recipe_hash, opened_at_us, source, written_by)
   SELECT ($1::bigint << 40) + n, $1::bigint, gen_random_uuid()::text, 'L-' || $1::int || '-' || n, 1, 'made-up',

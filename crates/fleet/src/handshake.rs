@@ -1,11 +1,11 @@
-//! Decides the next step for a target database from what file and database know of each other, without any access.
+//! Decides the next step for a target database from what file and database know of each other; accesses neither.
 //!
 //! | database | file | step |
 //! |---|---|---|
 //! | does not know the rig | has sent nothing | begin |
-//! | its last batch is the confirmed one | | send |
-//! | its last batch is the pending one | | confirm, then send |
-//! | its last batch is another one that came after the confirmed one | | refuse: the file is older |
+//! | last batch: the confirmed one | | send |
+//! | last batch: the pending one | | confirm, then send |
+//! | last batch: another one, after the confirmed one | | refuse: the file is older |
 //! | lacks the confirmed batch | | refuse: the database is older |
 //! | another file sends under this name | | refuse: other file |
 
@@ -19,15 +19,15 @@ pub struct Known {
     pub id: i32,
     /// UUID of the file.
     pub identity: String,
-    /// Epoch of the rig.
+    /// Epoch of the rig: 1 for its first file, one more for each file that took over.
     pub epoch: i32,
     /// Computer that began this epoch.
     pub host: String,
     /// Start of this epoch, as messages show it.
     pub since: String,
-    /// Number and UUID of its last batch.
+    /// Number and UUID of the last batch of the file.
     pub last: Option<(i64, String)>,
-    /// UUID of its last run with the number of its parts.
+    /// UUID of the last run of the file, with the number of parts of that run.
     pub last_run: Option<(String, i64)>,
 }
 

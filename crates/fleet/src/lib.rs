@@ -1,12 +1,13 @@
-//! PostgreSQL behind the histories of many rigs.
+//! Collects the histories of many rigs in PostgreSQL.
 //!
 //! - Each rig keeps its own history. The queue of that file ([`history::outbox`]) says what a database lacks.
-//! - [`mod@push`] sends a batch in one transaction: binary COPY to staging tables, `INSERT ... ON CONFLICT DO NOTHING`, commit;
-//!   then the file confirms it. A batch keeps its name until the database has said whether it has it ([`handshake`]), so
-//!   that every row arrives once whatever dies in between. A batch that did not arrive comes again with half of its rows.
-//! - Batches of a file are numbered without gaps and a number exists once. Two programs, a copied file and a file from a
-//!   backup therefore never mix their rows: the second one is refused, with the way out ([`Refusal`]).
-//! - [`Pusher`] does this in a thread of its own; the rig never waits for it.
+//! - [`mod@push`] sends a batch in one transaction (binary COPY to staging tables, `INSERT ... ON CONFLICT DO NOTHING`,
+//!   commit); then the file confirms the batch. A batch keeps its UUID until the database has said whether it has that
+//!   batch ([`handshake`]), so every row arrives once, whichever program dies in between. A batch that did not arrive
+//!   comes again with half of its rows.
+//! - Batches of a file are numbered without gaps and a number exists once. So two programs, a copied file or a file
+//!   from a backup never mix their rows: the database refuses the second sender, with a remedy ([`Refusal`]).
+//! - [`Pusher`] sends in a thread of its own; the rig never waits for a database.
 //! - [`Reader`] answers the questions of a history over all rigs, or some.
 //! - [`overview`] asks what all rigs do and made, for a page that many screens share.
 //! - The schema has remarks, monthly partitions, a role that inserts and one that reads ([`set_up`]).

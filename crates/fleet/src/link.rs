@@ -35,7 +35,7 @@ impl Drop for Link {
 }
 
 impl Link {
-    /// Connects, without a look at the schema.
+    /// Connects without a check of the schema.
     ///
     /// # Errors
     /// Fails when URL, password file or certificates cannot be used, and when the server does not let this user in.
@@ -90,7 +90,7 @@ impl Link {
         self
     }
 
-    /// Returns the last step of the schema; `None` when there is none.
+    /// Returns the number of the schema; `None` when the database has no schema `relayrig`.
     ///
     /// # Errors
     /// Fails when the schema `relayrig` belongs to another program.

@@ -1,11 +1,12 @@
 //! Asks a database what all its rigs do and made, for the page of all rigs.
 //!
-//! - [`watch`] keeps one connection and asks every [`EVERY`], whatever the number of screens; what changes slowly every
-//!   [`DAY_EVERY`]. Each answer is of one moment: a transaction that only reads and ends at once.
-//! - A question looks at the last 36 hours, rig by rig, through the indexes of the partitions; at the last 200 alarms, 50
-//!   calibrations and 100 reference checks of a rig. Its cost does not grow with the age of the database.
-//! - `OFFSET 0` keeps a question about one rig apart, so that the server enters the index once per rig instead of reading a
-//!   month for all.
+//! - [`watch`] keeps one connection and asks every [`EVERY`], whatever the number of screens; it asks for shifts,
+//!   reasons and reference parts every [`DAY_EVERY`]. Each answer is one snapshot: a transaction that only reads and
+//!   ends at once.
+//! - A question reads the last 36 hours, rig by rig, through the indexes of the partitions, and the last 200 alarms,
+//!   50 calibrations and 100 reference checks of a rig. Its cost does not grow with the age of the database.
+//! - `OFFSET 0` keeps a subquery about one rig apart, so that the server enters the index once per rig instead of
+//!   reading a month of all rigs.
 //! - When the database is lost, the last answers stay, with the trouble; the next question connects again.
 
 mod day;
@@ -29,25 +30,25 @@ const DOING: &str = "asking for the state of the rigs";
 pub const EVERY: Duration = Duration::from_secs(5);
 /// Least time between two questions about shifts, reasons and reference parts.
 pub const DAY_EVERY: Duration = Duration::from_secs(60);
-/// Longest time for one statement, seconds.
+/// Longest time for one statement.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Time that the overview looks back, µs: a day, and the shift that had begun before it.
+/// Time that the overview looks back, µs: a day, and a shift that began before that day.
 const BACK_US: i64 = 36 * HOUR_US;
 const HOUR_US: i64 = 3_600_000_000;
 
-/// What is to be watched.
+/// What [`watch`] asks about.
 #[derive(Debug, Clone)]
 pub struct Watched {
-    /// Database.
+    /// Database to ask.
     pub target: FleetTarget,
-    /// Shifts of the plant; empty when it has none.
+    /// Shifts of the plant; empty for a plant without shifts.
     pub shifts: Vec<Shift>,
     /// Time zone of the shifts.
     pub zone: TimeZone,
 }
 
-/// Asks again and again and sends what it learns; ends when every receiver is gone.
+/// Asks every [`EVERY`] and sends each new overview to `seen`; ends when every receiver is gone.
 pub async fn watch(watched: &Watched, seen: &Sender<Overview>) {
     let mut link = None;
     let mut turns = DayTurns::default();
@@ -63,17 +64,17 @@ pub async fn watch(watched: &Watched, seen: &Sender<Overview>) {
     }
 }
 
-/// Questions about what the rigs made.
+/// The last question about what the rigs made.
 #[derive(Debug, Default)]
 struct DayTurns {
-    /// Time of the last one.
+    /// Time of the last question.
     asked: Option<Instant>,
-    /// True while the last one has no answer.
+    /// True while the question has no answer.
     failed: bool,
 }
 
-/// Asks what the rigs do and, when it is time, what they made. A database that is too slow for the second question still
-/// answers the first; the trouble stays until both have answers.
+/// Asks what the rigs do and, when [`DAY_EVERY`] has passed, what they made. A database that is too slow for the second
+/// question still answers the first; the trouble stays until both questions have answers.
 async fn turn(
     watched: &Watched,
     link: &mut Option<Link>,
@@ -104,7 +105,7 @@ async fn turn(
     Ok(())
 }
 
-/// Notes a failure; it goes to the log when it is a new one.
+/// Notes a failure; logs it when its text differs from that of the failure before.
 fn note(error: &FleetError, seen: &Sender<Overview>) {
     let text = error.to_string();
     seen.send_modify(|it| {
@@ -123,7 +124,7 @@ fn note(error: &FleetError, seen: &Sender<Overview>) {
     });
 }
 
-/// Runs `work` in a transaction that only reads. The connection is lost after an error.
+/// Runs `work` in a transaction that only reads. Drop the connection after an error.
 async fn snapshot<T>(link: &Link, work: impl Future<Output = Result<T>>) -> Result<T> {
     let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY";
     link.step(DOING, link.client.batch_execute(begin)).await?;
@@ -141,7 +142,7 @@ async fn connected(target: &FleetTarget) -> Result<Link> {
     Ok(link)
 }
 
-/// Asks a database once, over a connection of its own; looks back from an instant, or from now.
+/// Asks a database once, over a connection of its own; looks back from `as_of`, or from now.
 ///
 /// # Errors
 /// Fails as [`Link::open`] does.

@@ -17,7 +17,7 @@ impl PasswordFile {
         named.or_else(home).map(Self)
     }
 
-    /// Returns the password for a connection; `None` when there is no file, or no line for it.
+    /// Returns the password for a connection; `None` without a file, or without a line for this connection.
     ///
     /// # Errors
     /// Fails when others than the owner can read the file, or when the program cannot.

@@ -80,7 +80,7 @@ pub async fn take_over(
     begin(&link, fleet, &file).await.map(drop)
 }
 
-/// Compares file and database; returns the number of the history there.
+/// Compares file and database; returns the number that the history of this file has in the database.
 pub(crate) async fn shake_hands(
     link: &Link,
     outbox: &mut Outbox,
@@ -157,7 +157,7 @@ fn known(row: &Row) -> Known {
     }
 }
 
-/// Registers the file as the current one of its rig; returns its number.
+/// Registers the file as the current one of its rig; returns the number that its history gets in the database.
 async fn begin(link: &Link, fleet: &FleetSettings, file: &Target) -> Result<i32> {
     const DOING: &str = "registering the rig";
     let rig = "INSERT INTO relayrig.rig (site, rig) VALUES ($1, $2) ON CONFLICT DO NOTHING";

@@ -31,14 +31,14 @@ pub struct TargetState {
     pub lag_s: f64,
     /// Age at which an alarm is due, seconds.
     pub alarm_after_s: u32,
-    /// Why the last attempt failed; `None` after one that succeeded.
+    /// Why the last attempt failed; `None` when it succeeded.
     pub last_error: Option<String>,
     /// Number of parts sent since the program began.
     pub sent_parts: u64,
 }
 
 impl TargetState {
-    /// Returns true when the database lacks a part for longer than it may.
+    /// Returns true when the database lacks a part for longer than `alarm_after_s`.
     #[must_use]
     pub fn is_late(&self) -> bool {
         self.lag_s > f64::from(self.alarm_after_s)
@@ -48,7 +48,7 @@ impl TargetState {
 /// Receives the states of all databases after each attempt.
 pub type Told = Box<dyn Fn(&[TargetState]) + Send + Sync>;
 
-/// Sends to all databases until it is dropped; the drop waits at most [`LAST_ROWS`] for queued rows.
+/// Sends to all databases until this value is dropped; the drop waits at most [`LAST_ROWS`] for queued rows.
 pub struct Pusher {
     shared: Arc<Shared>,
     threads: Vec<JoinHandle<()>>,
@@ -126,7 +126,8 @@ impl Drop for Pusher {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         let running = |ended: &mut usize| *ended < self.threads.len();
-        // A thread that is not done by then ends with the program; its batch is sent again by the next one.
+        // A thread that has not ended by then ends with the program; the program sends its batch again at the next
+        // start.
         drop(
             self.shared
                 .changed
@@ -158,7 +159,7 @@ fn send_until_the_end(shared: &Shared, mut sender: Sender) {
     }
 }
 
-/// Notes the end of an attempt with what the database lacks, if the file says it; logs an error when it is a new one.
+/// Notes the end of an attempt with what the database lacks, if known; logs an error whose text is new.
 fn note(shared: &Shared, place: usize, lag: Option<Lag>, sent: &Result<Pushed>) {
     let mut states = shared.states();
     let state = &mut states[place];

@@ -1,7 +1,8 @@
 //! Answers the questions of a history from a database with many rigs.
 //!
-//! A reader has one transaction that only reads, so that all answers of a command are of one moment. It needs no more than
-//! the role `relayrig_reader`. Commands may take long; a page opens a reader for each request, with a limit.
+//! A reader has one transaction that only reads, so that all answers of a command come from one snapshot. A reader
+//! needs no more than the role `relayrig_reader`. A command reads without a time limit; a page opens a reader with a
+//! limit for each request.
 
 use crate::error::{FleetError, Result};
 use crate::link::Link;
@@ -49,7 +50,8 @@ impl Reader {
         Self::open_within(target, rigs, None)
     }
 
-    /// Connects and begins to read, with a limit for each statement and for the pauses between two of them.
+    /// Connects and begins to read. The server ends a statement after `limit`, and the transaction when it stays idle
+    /// for 60 s (an hour without `limit`).
     ///
     /// # Errors
     /// Fails as [`Reader::open`] does.
@@ -86,14 +88,14 @@ impl Reader {
 
 impl Drop for Reader {
     fn drop(&mut self) {
-        // A request that a client gave up drops its reader on a thread that must not wait.
+        // When a client gives up a request, the reader is dropped on a thread that must not wait.
         if let Some(runtime) = self.runtime.take() {
             runtime.shutdown_background();
         }
     }
 }
 
-/// Returns the statements that begin a transaction.
+/// Returns the statements that set the limits and begin the transaction.
 fn begin(limit: Option<Duration>) -> String {
     let limits = match limit {
         None => "SET idle_in_transaction_session_timeout = '1h'".to_owned(),

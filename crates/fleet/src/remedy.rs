@@ -4,7 +4,7 @@ use crate::error::FleetError;
 use std::error::Error;
 use tokio_postgres::error::SqlState;
 
-/// What a person does.
+/// What a person does about an error, by the cause of the error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Remedy {
     /// The connection could not be made or broke.
@@ -13,9 +13,9 @@ pub enum Remedy {
     Password,
     /// The server does not let this user in.
     Access,
-    /// There is no such database.
+    /// The server has no database of this name.
     Database,
-    /// The user lacks a right.
+    /// The user lacks a right in the database.
     Role,
     /// The server is full.
     Room,
@@ -23,7 +23,7 @@ pub enum Remedy {
     Connections,
     /// The server ended the statement because it took too long.
     Slow,
-    /// Anything else that the server said.
+    /// Any other error of the server.
     Log,
     /// The schema is missing, foreign or too old.
     Schema,
@@ -32,7 +32,7 @@ pub enum Remedy {
 }
 
 impl Remedy {
-    /// All of them.
+    /// All remedies.
     pub const ALL: [Self; 11] = [
         Self::Network,
         Self::Password,
@@ -115,7 +115,7 @@ impl Remedy {
 }
 
 impl FleetError {
-    /// Returns what a person does about it.
+    /// Returns what a person does about this error.
     #[must_use]
     pub const fn remedy(&self) -> Remedy {
         match self {
@@ -139,7 +139,8 @@ impl FleetError {
     }
 }
 
-/// Returns true when the connection could not be made or broke, and false when both sides could not agree on it.
+/// Returns true when the connection could not be made or broke; false when the sides did not agree on password or
+/// encryption.
 fn is_broken(error: &tokio_postgres::Error) -> bool {
     let mut cause: Option<&dyn Error> = Some(error);
     while let Some(it) = cause {

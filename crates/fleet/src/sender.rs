@@ -16,7 +16,7 @@ const KEPT: Duration = Duration::from_secs(60);
 #[derive(Debug)]
 pub(crate) struct Sender {
     fleet: FleetSettings,
-    /// Number of the database in the settings.
+    /// Index of the database in the settings.
     pub(crate) place: usize,
     db: PathBuf,
     runtime: Runtime,
@@ -26,7 +26,7 @@ pub(crate) struct Sender {
 }
 
 impl Sender {
-    /// Makes a sender for the database `place` of the settings; it connects later.
+    /// Makes a sender for the database with index `place` in the settings; does not connect yet.
     pub(crate) fn new(fleet: FleetSettings, place: usize, db: PathBuf) -> std::io::Result<Self> {
         assert!(place < fleet.targets.len(), "a database without settings");
         Ok(Self {
@@ -43,8 +43,8 @@ impl Sender {
         &self.fleet.targets[self.place]
     }
 
-    /// Sends what the database lacks, until `stop` returns true. The first attempt connects in any case, so that a wrong
-    /// password shows before the first part; later ones connect only for rows.
+    /// Sends what the database lacks, until `stop` returns true. The first attempt connects in any case, so that a
+    /// wrong password shows before the first part; later attempts connect only to send rows.
     pub(crate) fn attempt(&mut self, stop: impl Fn() -> bool) -> Result<Pushed> {
         self.send_rows(stop).map_err(FleetError::while_sending)
     }
@@ -87,7 +87,7 @@ impl Sender {
         Ok(sent)
     }
 
-    /// Returns what the database lacks; `None` when the file cannot say it.
+    /// Returns what the database lacks; `None` when the file cannot be read.
     pub(crate) fn lag(&self) -> Option<Lag> {
         let outbox = Outbox::open(&self.db).ok()?;
         match outbox.known(&self.target().url).ok()? {

@@ -14,19 +14,19 @@ const ENTRIES: u32 = 2000;
 /// Longest time for one batch.
 const BATCH: Duration = Duration::from_secs(120);
 
-/// What was sent.
+/// Number of batches and parts that were sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Pushed {
     /// Batches that the database has committed.
     pub batches: u64,
-    /// Parts in them.
+    /// Parts in these batches.
     pub parts: u64,
 }
 
 /// Month of a judgement, UTC.
 type Month = (i16, i8);
 
-/// A connection with staging tables. One that failed must be dropped.
+/// A connection with staging tables; drop it after an error.
 #[derive(Debug)]
 pub(crate) struct Session {
     link: Link,
@@ -75,8 +75,8 @@ impl Session {
         Ok(pushed)
     }
 
-    /// Makes the partitions of the months in which the parts of a batch were judged. The months between stay without: a
-    /// computer whose clock jumped must not make hundreds of them.
+    /// Makes the partitions of the months in which the parts of a batch were judged. The months in between get none,
+    /// because a computer whose clock jumped must not make hundreds of partitions.
     async fn ensure_months(&mut self, batch: &Batch) -> Result<()> {
         let judged = batch.parts.iter().map(|it| it.judged_at_us);
         let months: BTreeMap<Month, i64> = judged.map(|at_us| (month(at_us), at_us)).collect();
@@ -93,8 +93,8 @@ impl Session {
         Ok(())
     }
 
-    /// Sends a batch in one transaction. The number of the batch comes first: it waits for another program that sends the
-    /// same number, and fails when that one commits.
+    /// Sends a batch in one transaction. The insert of the batch number comes first: it waits for another program that
+    /// sends the same number, and fails when that program commits.
     async fn send(&mut self, (fleet, history): (&FleetSettings, i32), batch: &Batch) -> Result<()> {
         const DOING: &str = "sending a batch";
         let target = self.link.target.clone();
@@ -119,8 +119,8 @@ impl Session {
     }
 }
 
-/// Writes a batch and commits it. Returns the number of runs whose numbers belong to other runs; with any, it commits
-/// nothing.
+/// Writes a batch and commits it. Returns the number of runs whose numbers belong to other runs; above 0, nothing is
+/// committed.
 async fn write(
     link: &mut Link,
     history: i32,
@@ -142,7 +142,7 @@ async fn write(
     Ok(differing)
 }
 
-/// Returns the month, UTC, of an instant in microseconds since 1970; an instant beyond the calendar has the last one.
+/// Returns the month, UTC, of an instant in microseconds since 1970; beyond the calendar, its last month.
 fn month(at_us: i64) -> Month {
     let at = jiff::Timestamp::from_microsecond(at_us).unwrap_or(jiff::Timestamp::MAX);
     let date = at.to_zoned(jiff::tz::TimeZone::UTC);

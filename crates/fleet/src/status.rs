@@ -34,7 +34,7 @@ pub struct Report {
     pub clock_ahead_s: f64,
     /// Number of months from now that have partitions.
     pub months_ahead: i64,
-    /// Faults with their remedies, one a text.
+    /// Faults, each a text with its remedy.
     pub faults: Vec<String>,
 }
 

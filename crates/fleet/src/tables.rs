@@ -1,6 +1,6 @@
-//! The tables of a history file, made from those of the database: a statement that names some of them gets them as common
-//! table expressions. So questions are written once, in the words of the file; the database needs no further views, and a
-//! replica that can only be read answers too.
+//! The tables of a history file, made from those of the database: a statement gets each table that it names as a common
+//! table expression. So a question is written once, for the tables of the file; the database needs no further views,
+//! and a read-only replica answers too.
 
 /// Which rigs answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -79,7 +79,7 @@ const TABLES: [(&str, Rows); 17] = [
         body ->> 'who' AS who, body ->> 'why' AS why")),
 ];
 
-/// Words of SQLite that the database does not know, with what it gets instead.
+/// Clauses of SQLite that PostgreSQL does not know, each with its replacement.
 const WORDS: [(&str, &str); 1] = [(" INDEXED BY part_time", "")];
 
 /// Translates a statement on the tables of a file to the SQL of the database: defines each table that the statement

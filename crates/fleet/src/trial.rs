@@ -1,5 +1,5 @@
-//! A PostgreSQL server for a trial: under an unprivileged user, with a data directory of its own, on a loopback port. For
-//! tests and studies; it needs the Debian package `postgresql` (15 or later).
+//! A PostgreSQL server for tests and studies: under an unprivileged user, with a data directory of its own, on a
+//! loopback port. Needs the Debian package `postgresql` (15 or later).
 
 use config::{FleetTarget, SampleChoice, TlsChoice};
 use std::io::{Error, Result};
@@ -52,7 +52,7 @@ impl Trial {
     /// Starts the server again after [`Trial::kill`]; waits until it answers.
     ///
     /// # Errors
-    /// Fails when it does not answer within a minute.
+    /// Fails when the server does not answer within a minute.
     pub fn begin(&self) -> Result<()> {
         let options = format!(
             "-p {} -c listen_addresses=127.0.0.1 -c unix_socket_directories='' -c max_connections=100 \
@@ -83,7 +83,7 @@ impl Trial {
     /// Kills the server at once (-9).
     ///
     /// # Errors
-    /// Fails when it does not run.
+    /// Fails when the server does not run.
     pub fn kill(&self) -> Result<()> {
         let file = std::fs::read_to_string(self.data().join("postmaster.pid"))?;
         let pid = file.lines().next().unwrap_or_default();
@@ -143,7 +143,7 @@ impl Trial {
 impl Drop for Trial {
     fn drop(&mut self) {
         let stop = ["stop", "-m", "immediate", "-D"];
-        // The folder goes in any case.
+        // The folder is deleted even if the server does not stop.
         let _ = self.program("pg_ctl").args(stop).arg(self.data()).output();
     }
 }

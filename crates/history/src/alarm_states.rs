@@ -1,7 +1,7 @@
-//! State changes of alarms (ISA-18.2): returned, acknowledged, shelved. They survive a restart.
+//! Stored state changes of alarms (ISA-18.2): returned, acknowledged, shelved. A restart of the program loses none.
 //!
 //! A change applies to a code: one acknowledgement covers all occurrences of an alarm. Only [`AlarmChange::Returned`]
-//! may apply to one of several alarms with the same code. The real rig and the simulated rig are kept apart.
+//! may apply to one of several alarms with the same code. A change on the real rig never applies to the simulated rig.
 
 use super::Store;
 use super::alarms::args;
@@ -144,8 +144,8 @@ fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<Unackn
         .try_fold(Vec::new(), |left, row| row.map(|row| with(left, row)))
 }
 
-/// Adds the occurrence `last` to `left`. If `left` has an earlier occurrence of the same alarm, removes it and adds its
-/// count to that of `last`.
+/// Appends the occurrence `last` to the unacknowledged alarms `left`. Removes an earlier occurrence of the same alarm
+/// from `left` and adds its count to that of `last`.
 fn with(
     mut left: Vec<UnacknowledgedAlarm>,
     mut last: UnacknowledgedAlarm,

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use texts::{Args, Lang};
 use utoipa::ToSchema;
 
-/// State of an alarm (ISA-18.2, states B to E). [`Shelf`] tells whether the alarm is shelved.
+/// State of an alarm (ISA-18.2), apart from shelving, which [`Shelf`] describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AlarmState {
@@ -56,7 +56,7 @@ pub struct Alarm {
     pub cause_zh: Option<&'static str>,
     /// Time at which the alarm was raised.
     pub raised: Moment,
-    /// Time at which the cause was gone; `None` while the alarm is active, and for an alarm that ended its run.
+    /// Time at which the cause had gone; `None` while the alarm is active, and for an alarm that ended its run.
     pub cleared: Option<Moment>,
     /// Time of the acknowledgement, if any.
     pub acknowledged: Option<Moment>,

@@ -38,7 +38,7 @@ impl Archive {
         })
     }
 
-    /// Reads the histories of many rigs from a server.
+    /// Returns a reader of the histories that many rigs have sent to a server.
     pub fn of_server(server: Box<dyn Server>) -> Self {
         Self {
             path: server.name().into(),
@@ -156,8 +156,8 @@ impl Archive {
         Ok(self.completed(found).doing(DOING)?.pop())
     }
 
-    /// Returns the calibration that was stored last for each coil voltage, of the real or the simulated rig. Only the file of
-    /// a rig has an answer.
+    /// Returns the calibration that was stored last for each coil voltage, of the real or the simulated rig. Fails on a
+    /// server.
     pub fn calibrations(&self, simulated: bool) -> Result<Vec<CalibrationRecord>> {
         self.source
             .file()?
@@ -169,7 +169,7 @@ impl Archive {
             .doing("reading the latest calibrations")
     }
 
-    /// Returns the keys of all parameters, in the order in which exports list their columns.
+    /// Returns the keys of all parameters, in the order of the columns of an export.
     pub fn parameters(&self) -> Result<Vec<String>> {
         self.source
             .rows("SELECT key FROM parameter ORDER BY id", &[], |row| {

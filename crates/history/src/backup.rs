@@ -1,4 +1,4 @@
-//! Copies the history while it is in use, and checks its integrity. Writers continue during both.
+//! Copies the history while it is in use, and checks its integrity. Writers continue during copy and check.
 
 use super::Archive;
 use super::error::{Doing, HistoryError, Result};
@@ -34,7 +34,7 @@ impl Archive {
         if partial.exists() {
             fs::remove_file(partial).map_err(place)?;
         }
-        // The connection of a reader is query-only; this is lifted for the one statement that writes the copy.
+        // A reader's connection is query-only; the statement that writes the copy is the one exception.
         self.source
             .file()?
             .pragma_update(None, "query_only", false)

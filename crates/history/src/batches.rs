@@ -1,6 +1,5 @@
-//! Batches of parts that were tested together: curves of the air in their chamber, and switchings of each socket.
-//!
-//! The air has a point every five seconds, in the code of [`CurveRecord`]. A server with many rigs has no batches.
+//! Batches of parts that were tested together in a chamber: curves of the air, and when the contact in each socket
+//! switched. Curves are packed as [`CurveRecord`] describes. A server with many rigs has no batches.
 
 use super::curve::{packed, unpacked};
 use super::error::{Doing, HistoryError, Result};
@@ -14,7 +13,7 @@ use serde::Serialize;
 use std::str::FromStr;
 use utoipa::ToSchema;
 
-/// Start of the names of the signals of sockets; the number follows.
+/// Prefix of the signal of a socket; the number of the socket follows.
 const SOCKET: &str = "socket_";
 
 /// A batch whose test has ended.
@@ -28,8 +27,8 @@ pub struct BatchRecord {
     pub begin_us: i64,
     /// End of the test: the time of the verdicts.
     pub ended_us: i64,
-    /// Signals, at most one of a name: `set_point`, `reference` (C), `rate` (K/min), and `socket_` with its number, 1 when the
-    /// contact opened and 0 when it closed.
+    /// Signals, each name at most once: `set_point`, `reference` (C), `rate` (K/min), and for each socket `socket_`
+    /// with its number: 1 when the contact opened, 0 when the contact closed.
     pub signals: Vec<BatchSignal>,
 }
 
@@ -38,7 +37,7 @@ pub struct BatchRecord {
 pub struct BatchSignal {
     /// Number of the part in the socket; `None` for the chamber.
     pub seq: Option<u64>,
-    /// Samples.
+    /// Samples of the signal.
     pub curve: CurveRecord,
 }
 
@@ -55,39 +54,39 @@ pub struct Batch {
     pub begin: Moment,
     /// End of the test.
     pub ended: Moment,
-    /// The air.
+    /// Temperature of the air in the chamber.
     pub curve: BatchAir,
-    /// Sockets whose contact has switched, by number.
+    /// Sockets whose contact has switched.
     pub switched: Vec<BatchSocket>,
 }
 
 /// Temperature of the air during a batch; the members have equal lengths.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, ToSchema)]
 pub struct BatchAir {
-    /// Time, s.
+    /// Time since the begin of the batch, s.
     pub t_s: Vec<f64>,
-    /// Set point, C; null before the passes.
+    /// Set point of the chamber, C; null before its first ramp.
     pub set_c: Vec<Option<f64>>,
-    /// Reference thermometer, C.
+    /// Reading of the reference thermometer, C.
     pub reference_c: Vec<Option<f64>>,
     /// Slope of the reference thermometer over a minute, K/min; null in the first minute.
     pub rate_k_per_min: Vec<Option<f64>>,
 }
 
-/// Switchings of the contact of a socket; a contact that switched often has the last twelve of each kind.
+/// Times at which the contact of a socket switched; of each kind, at most the last twelve.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, ToSchema)]
 pub struct BatchSocket {
     /// Number of the socket.
     pub socket: u16,
-    /// Number of the part; null when it got none.
+    /// Number of the part; null for a part without a number.
     pub seq: Option<u64>,
     /// Times at which the contact opened, s.
     pub opened_s: Vec<f64>,
-    /// Times at which it closed, s.
+    /// Times at which the contact closed, s.
     pub closed_s: Vec<f64>,
 }
 
-/// Inserts a batch; does nothing for one that is stored already.
+/// Inserts a batch; does nothing when the batch is stored already.
 pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &BatchRecord) -> Result<()> {
     const DOING: &str = "recording a batch";
     assert!(it.begin_us <= it.ended_us, "a batch that ends first");
@@ -148,7 +147,7 @@ struct Signal {
 }
 
 impl Archive {
-    /// Returns the batches that lot, recipe and run of the filter select, in order of runs and numbers; none on a server.
+    /// Returns the batches that lot, recipe and run of the filter select, in order of run and number; none on a server.
     pub fn batches(&self, filter: &Filter) -> Result<Vec<Batch>> {
         const DOING: &str = "reading the batches";
         if self.source.dialect() == Dialect::Server {
@@ -222,7 +221,7 @@ impl Archive {
 }
 
 impl Batch {
-    /// Takes a signal to its place; a name that this program does not know has none.
+    /// Stores the samples of a signal in the member of its name; ignores an unknown name.
     fn take(&mut self, signal: Signal) {
         let values = || signal.samples.iter().map(|(_, value)| *value).collect();
         match signal.name.as_str() {

@@ -8,7 +8,7 @@ use machine::dut::Reason;
 use rusqlite::types::Value;
 use std::collections::HashMap;
 
-/// Values of all attempts of the parts that `among` selects, in order of parts, parameters and attempts.
+/// Values of all attempts; [`of_parts`] adds the condition that selects parts, and the order.
 pub(super) const VALUES: &str =
     "SELECT m.part_id, parameter.key, m.value, m.uncertainty FROM measurement AS m
      JOIN parameter ON parameter.id = m.parameter_id";
@@ -35,7 +35,7 @@ type RunOf = (String, u32, String, Option<String>);
 type Maps = (Map, Map);
 type Map = serde_json::Map<String, serde_json::Value>;
 
-/// Returns the statement `select` for the rows of these parts in the table `table`, with its values.
+/// Returns `select`, restricted to the rows of these parts in `table`, and the values of its parameters.
 pub(super) fn of_parts(
     dialect: Dialect,
     (select, table, order): (&str, &str, &str),

@@ -30,7 +30,7 @@ pub enum HistoryError {
         /// Latest schema that this program knows.
         known: i64,
     },
-    /// The file belongs to a rig of the other kind.
+    /// The file belongs to a real rig, and a simulated rig would write to it, or the other way round.
     #[error(
         "{path} is the history of {holds}, found {found}: name another file with --db, since real and simulated parts never share one"
     )]
@@ -75,7 +75,7 @@ pub enum HistoryError {
     Unsettled {
         /// Path of the file.
         path: PathBuf,
-        /// File that SQLite keeps beside it.
+        /// File that SQLite keeps beside `path`.
         beside: PathBuf,
     },
     /// The file is read-only and has an older schema, which this program would have to migrate.
@@ -164,7 +164,7 @@ pub enum HistoryError {
     /// Two programs send this file to the same database.
     #[error("another program sends this file to {url}: stop one of them")]
     OtherBatch {
-        /// Database.
+        /// Address of the database.
         url: String,
     },
     /// Only the file of a rig can answer this question.

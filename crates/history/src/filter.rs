@@ -3,8 +3,8 @@
 //! Without the member `param`, the indexes of the table `part` find the parts. With `param`, the index
 //! `measurement_value` (parameter, population, run, verdict, value) gives their row numbers: SQLite enters this index
 //! once per run and verdict, at the least value, and then visits the matching parts in ascending order, so a page of
-//! results ends the search early. On a server, the index of the same name begins with the run, and values join their part,
-//! whose verdict they do not carry. `filter/related.rs` selects runs, alarms and orders.
+//! results ends the search early. On a server, the index of the same name begins with the run; a value has no copy of
+//! the verdict, so the query joins the part. `filter/related.rs` selects runs, alarms and orders.
 
 mod related;
 
@@ -163,8 +163,8 @@ impl Filter {
         select
     }
 
-    /// Counts the selected parts. In a file, with `param`, reads only the index `measurement_value` when this index has a
-    /// column for every member of the filter.
+    /// Counts the selected parts. In a file, with `param`, reads only the index `measurement_value` when this index has
+    /// a column for every member of the filter.
     pub(super) fn count(&self, dialect: Dialect) -> Select {
         let found = match (&self.param, dialect) {
             (Some(param), Dialect::File) if !self.restricts_part() => {
@@ -203,7 +203,7 @@ impl Filter {
         select
     }
 
-    /// Selects from the index `measurement_value` of a file, and with `joined` from the parts.
+    /// Selects from the index `measurement_value` of a file; `joined` adds the columns of the table `part`.
     fn values(&self, param: &str, columns: &str, joined: bool) -> Select {
         let join = if joined {
             " CROSS JOIN part ON part.id = m.part_id"
@@ -280,8 +280,8 @@ impl Filter {
         }
     }
 
-    /// Adds the conditions on the table `part`; with `by_value`, leaves out kind and verdict, which [`Self::values`]
-    /// adds.
+    /// Adds the conditions on the table `part`. With `by_value`, leaves out kind and verdict, because [`Self::values`]
+    /// adds them.
     fn part_conditions(&self, select: &mut Select, by_value: bool) {
         if !by_value {
             match self.kind.as_deref() {

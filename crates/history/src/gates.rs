@@ -3,9 +3,9 @@
 //! | state | may a run begin? | what leads to this state |
 //! |---|---|---|
 //! | open | yes, with its recipe | a run that was stopped, cut off or ended by an alarm; a release |
-//! | running | yes: the previous run was cut off | the start of a run; the next program on the rig makes it open |
+//! | running | yes: the previous run was cut off | the start of a run; the next program on the rig makes the lot open |
 //! | held | no | a failed reference check, the reject-rate limit, a person |
-//! | complete | a retest only, with the same recipe | the count was reached, or a person closed it |
+//! | complete | a retest only, with the same recipe | the count was reached, or a person closed the lot |
 //!
 //! A run is *cut off* when the program ends without closing it, for example at a power failure.
 //!
@@ -125,9 +125,9 @@ pub struct LotStatus {
     pub why_zh: Option<String>,
     /// Time of the last change of state.
     pub since: Moment,
-    /// Name of the recipe of its last run, imports aside.
+    /// Name of the recipe of the last run of the lot, imports aside.
     pub recipe: String,
-    /// Hash of the recipe of its last run.
+    /// Hash of the recipe of the last run of the lot, imports aside.
     pub recipe_hash: String,
 }
 
@@ -169,10 +169,11 @@ pub struct ReferenceCheck {
     pub suspect_since: Option<Moment>,
 }
 
-/// SQL condition on `part` that is true for a suspect part: a check after it failed, and no check in between passed.
+/// SQL condition on `part` that is true for a suspect part: a check after the part failed, and no check in between
+/// passed.
 ///
-/// Within a run, times decide the order; between runs, row numbers do, because the clock may be set back between them. On a
-/// server the upper bits of row numbers name the history; parts of other rigs are never suspect.
+/// Times order checks and parts within a run; row numbers order runs, because the clock may be set back between runs.
+/// On a server the bits of a row number from bit 40 up name the history, so parts of other rigs are never suspect.
 pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS failed \
     JOIN run AS checked ON checked.id = failed.run_id JOIN run AS own ON own.id = part.run_id \
     WHERE NOT failed.passed AND (part.run_id, part.judged_at_us) <= (failed.run_id, failed.at_us) \
@@ -231,9 +232,9 @@ pub(super) fn reference_check(
 }
 
 impl Store {
-    /// Sets every lot whose run was cut off to open, or to complete if it was complete before, and drops the serial
-    /// numbers that were scanned for parts that never arrived. The caller has just taken the real or the simulated rig,
-    /// so none of its runs is under way.
+    /// Sets every lot whose run was cut off to open, or to complete if the lot was complete before, and drops the
+    /// serial numbers that were scanned for parts that never arrived. The caller has just taken control of the real or
+    /// the simulated rig, so no run is under way on that rig.
     pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
         const DOING: &str = "looking for lots that were cut off";
         let transaction = self.transaction(DOING)?;
@@ -276,8 +277,7 @@ impl Archive {
             .doing("reading the state of a lot")
     }
 
-    /// Counts of the selected parts: first tests, those of them that passed, parts that passed in a retest, and suspect
-    /// parts.
+    /// Counts the selected parts: judged in a first test, passed in a first test, passed in a retest, suspect.
     pub fn lot_yield(&self, filter: &Filter) -> Result<LotYield> {
         let suspect = self.count_parts(&Filter {
             suspect: true,
@@ -310,7 +310,7 @@ impl Archive {
             .doing("reading reference checks")
     }
 
-    /// Returns the latest reference check of the real or the simulated rig.
+    /// Returns the latest reference check of the real or the simulated rig; `None` before the first.
     pub fn last_reference_check(&self, simulated: bool) -> Result<Option<ReferenceCheck>> {
         self.source
             .first(

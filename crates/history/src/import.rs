@@ -2,8 +2,8 @@
 //!
 //! The header names parameter keys, and optionally `time` (RFC 3339), `verdict`, `serial` and `bin`. An empty cell
 //! means that the value was not measured. The import ignores columns that only the export writes (`lot`, `seq`,
-//! `uncertainty ...`), so that it takes an exported file. It refuses any other unknown column, because a misspelt key
-//! would lose its values unnoticed.
+//! `uncertainty ...`), so that it takes an exported file. The import refuses any other unknown column, because a
+//! misspelt key would lose its values unnoticed.
 
 use super::csv::{self, CsvError, Record};
 use super::inquiry::checks::VERDICTS;
@@ -28,7 +28,7 @@ const UNCERTAINTY: &str = "uncertainty ";
 /// One row of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportRow {
-    /// The part, still without lot and number; its time is 0 when the row has none.
+    /// The part, still without lot and number; its time is 0 when the row has no time.
     pub part: PartRecord,
     /// True when the row has a time.
     pub timed: bool,

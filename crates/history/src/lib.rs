@@ -1,17 +1,17 @@
 //! History: every lot, part, measurement, reply and alarm of a rig, in one SQLite file.
 //!
-//! - [`Store`] is the only writer. It takes records ([`Row`]) in batches, one transaction each: a batch that was
-//!   acknowledged survives power loss, and one that failed leaves no row.
-//! - [`Archive`] is the reader. Command line, page and exports select with the same [`Filter`]. It reads the file of a rig, or
-//!   a [`Server`] with many rigs.
+//! - [`Store`], the only writer, takes records ([`Row`]) in batches, one transaction each: an acknowledged batch
+//!   survives power loss, and a failed batch leaves no row.
+//! - [`Archive`] is the reader of the file of a rig, or of a [`Server`] with many rigs. Command line, page and exports
+//!   select with the same [`Filter`].
 //! - A part has one row: recording the part again adds none; its landing or interruption completes the row. Opening a
 //!   lot again adds a run.
 //! - Each value is stored with its attempt, limits, uncertainty and budget, and with the raw replies by line, module
 //!   and channel. The run names its recipe and calibration by their hashes.
 //! - Judging by another recipe writes nothing ([`rejudged`]). Only a run that was copied whole can be deleted
 //!   ([`Store::prune`]).
-//! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]); a batch keeps those of its chamber
-//!   ([`Batch`]).
+//! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]); a batch keeps the curves of its
+//!   chamber ([`Batch`]).
 //! - A plan for tooling keeps its steps with the persons who did them ([`tooling`]).
 //! - A file belongs to one rig, real or simulated: its first run marks it ([`check_rig`]).
 //! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`,

@@ -33,10 +33,10 @@ pub struct LotSummary {
     pub opened: Moment,
     /// End of the run; `None` while it is under way, and for a run that was cut off.
     pub closed: Option<Moment>,
-    /// How the run ended: `complete`, `stopped` or `alarm`; `None` when it has no end, and for runs older than schema
-    /// 9.
+    /// How the run ended: `complete`, `stopped` or `alarm`; `None` for a run without an end, and for runs older than
+    /// schema 9.
     pub ended: Option<String>,
-    /// Code of the alarm or program fault that ended the run; `None` when neither did.
+    /// Code of the alarm or program fault that ended the run; `None` for any other end.
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,
@@ -94,12 +94,13 @@ pub(super) const COUNTS: &str =
     "SELECT kind, verdict, bin, count(*) FROM part WHERE run_id = ?1 GROUP BY 1, 2, 3";
 
 impl Archive {
-    /// Returns the runs in the order in which the history received them, whatever the clock said; lot, recipe and run of the filter select them.
+    /// Returns the runs that lot, recipe and run of the filter select, in the order in which the history received them,
+    /// whatever the clock said.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
         self.lots_since(filter, None)
     }
 
-    /// Returns runs as [`Archive::lots`] does, of these only those that were opened at `opened` or later.
+    /// Returns the runs of [`Archive::lots`] that were opened at `opened` or later; `None` returns all.
     pub fn lots_since(&self, filter: &Filter, opened: Option<Moment>) -> Result<Vec<LotSummary>> {
         let mut select = filter.runs();
         if let Some(opened) = opened {

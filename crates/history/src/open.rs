@@ -1,4 +1,4 @@
-//! Opens a history file: checks whose it is, brings it to the present schema, makes writes durable.
+//! Opens a history file: checks which program it belongs to, migrates it to the present schema, makes writes durable.
 //!
 //! 1. A file with tables but another `application_id` belongs to another program; opening it fails before any write.
 //! 2. Opening fails on a schema newer than this program, and migrates an older one: all missing steps in one

@@ -55,16 +55,16 @@ pub struct OrderEntry {
 /// Which orders of the audit to read, besides the filter.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct OrderChoice {
-    /// Name of the person; all people without it.
+    /// Name of the person; `None` for all people.
     pub who: Option<String>,
-    /// Word of the order; all orders without it.
+    /// Name of the order; `None` for all orders.
     pub order: Option<String>,
-    /// True leaves out [`Self::OF_PEOPLE`].
+    /// True leaves out the entries of [`Self::OF_PEOPLE`].
     pub without_people: bool,
 }
 
 impl OrderChoice {
-    /// Words of the entries about people: changes of people and passwords, refused logins.
+    /// Names of the entries about people: changes of people and passwords, refused logins.
     pub const OF_PEOPLE: [&'static str; 2] = ["people", "login"];
 }
 
@@ -152,8 +152,8 @@ impl Archive {
             .doing("reading revisions")
     }
 
-    /// Returns the orders that lot, run, recipe and time span of the filter select, in order of time; limit and offset of the
-    /// filter count orders.
+    /// Returns the orders that lot, run, recipe and time span of the filter select, in order of time. Limit and offset
+    /// of the filter count orders.
     pub fn orders(&self, filter: &Filter, choice: &OrderChoice) -> Result<Vec<OrderEntry>> {
         filter
             .orders(choice)

@@ -6,7 +6,7 @@ use super::{Archive, Filter, Store};
 use rusqlite::{Connection, OptionalExtension};
 use std::path::Path;
 
-/// Marks the file as belonging to a real or to the simulated rig. Fails when it belongs to the other kind.
+/// Marks the file as belonging to a real or to the simulated rig. Fails when the file belongs to the other kind.
 pub(super) fn claim(connection: &Connection, path: &Path, simulated: bool) -> Result<()> {
     const DOING: &str = "marking the history with its rig";
     let mark = "INSERT INTO rig (id, source) VALUES (1, ?1) ON CONFLICT DO NOTHING";
@@ -53,7 +53,8 @@ pub fn check_rig(path: &Path, simulated: bool) -> Result<()> {
 impl Store {
     /// Marks the file as belonging to a real or to the simulated rig.
     ///
-    /// # Errors Fails when the file belongs to the other kind.
+    /// # Errors
+    /// Fails when the file belongs to the other kind.
     pub fn claim(&mut self, simulated: bool) -> Result<()> {
         claim(self.connection(), &self.path, simulated)
     }

@@ -2,7 +2,7 @@
 //!
 //! - Judges values as a run does, with their stored uncertainty. A value within its uncertainty of a limit is
 //!   `not proven`, because a confirmation measurement is no longer possible.
-//! - Converts values that the first recipe states at its reference temperature to that of the other recipe.
+//! - Converts values at the reference temperature of the first recipe to the reference temperature of the other.
 //! - When a characteristic has no value, its curves may prove that it exceeds the upper limit
 //!   ([`machine::dut::characteristic::KindCharacteristic`]).
 //! - Reasons that depend on no limit (an open circuit, a refused reply) stay.
@@ -64,8 +64,9 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     }
 }
 
-/// Returns true for a reason that judging by the other recipe replaces, because it depends on a limit or on a missing
-/// value. "The contact did not move" is such a reason when, by `seen`, the curves show that an upper limit is exceeded.
+/// Returns true for a reason that judging by the other recipe replaces, because the reason depends on a limit or on a
+/// missing value. "The contact did not move" depends on a limit when the curves show, by `seen`, that the upper limit
+/// is exceeded.
 fn is_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
     match reason.code {
         Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,

@@ -1,8 +1,8 @@
 //! Retention: deletes the parts of runs that were copied whole.
 //!
 //! - Backup and export call [`Store::record_export`] once their file is on the disk. Only closed runs count as copied.
-//! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves, batches and alarms of copied runs that ended
-//!   before a given instant, one transaction per run, and leaves runs of which a target of the
+//! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves, batches and alarms of copied runs that
+//!   ended before a given instant, one transaction per run. It skips runs of which a target of the
 //!   [outbox](super::outbox) still lacks rows. Lot, run, recipe and the note of the copy stay: run numbers
 //!   continue, and the note names the file that holds the parts.
 
@@ -11,7 +11,7 @@ use super::{Filter, Store};
 use rusqlite::{Transaction, params, params_from_iter};
 use serde::Serialize;
 
-/// A run whose parts were deleted, or will be.
+/// A run whose parts [`Store::prune`] has deleted or would delete.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Pruned {
     /// Name of the lot.
@@ -47,7 +47,7 @@ impl Store {
         Ok(noted as u64)
     }
 
-    /// Returns the runs that [`Store::prune`] would delete the parts of, oldest first.
+    /// Returns the runs whose parts [`Store::prune`] would delete, oldest first.
     pub fn prunable(&self, closed_before_us: i64) -> Result<Vec<Pruned>> {
         let found = self
             .prunable_rows(closed_before_us)
@@ -111,7 +111,7 @@ pub(super) const EMPTYING: [&str; 10] = [
     "DELETE FROM alarm WHERE run_id = ?1",
 ];
 
-/// Notes the highest row numbers before rows go, so that no later row gets a number that a target of the outbox knows.
+/// Notes the highest row numbers before rows are deleted, so that no later row gets a number that a target knows.
 const FLOOR: &str = "INSERT INTO row_floor (name, last)
     SELECT name, last FROM (SELECT 'part' AS name, max(id) AS last FROM part
       UNION ALL SELECT 'alarm', max(id) FROM alarm) WHERE last IS NOT NULL

@@ -1,8 +1,8 @@
 //! Dropped scans: serial numbers that a person scanned for parts that did not arrive before the end of their run. An
 //! alarm of the run names them, with the persons who scanned them.
 //!
-//! The audit of orders has every scan that the rig accepted. A scan is used up when a part of the run has its number.
-//! Any other scan still waited in the queue, or its part was lost, when the run ended or the program was cut off.
+//! The audit of orders has every scan that the rig accepted. A scan is used when a part of the run has the scanned
+//! serial number. Any other scan still waited in the queue, or its part was lost, when the run ended or was cut off.
 
 use super::AlarmRecord;
 use super::error::{Doing, Result};
@@ -13,7 +13,7 @@ use machine::station::trouble::Alarm;
 use rusqlite::{Connection, Transaction, params};
 use texts::Lang;
 
-/// Selects the scans that the rig accepted in a run, and the orders that took the last scan back, in order.
+/// Selects the scans that the rig accepted in a run, and the orders that took back the last scan, in order of time.
 pub(super) const SCANS: &str =
     "SELECT what ->> 'order' = 'scan', what ->> 'serial', who FROM ordered
     WHERE run_id = ?1 AND refused IS NULL AND what ->> 'order' IN ('scan', 'unscan') ORDER BY id";
@@ -41,7 +41,7 @@ pub(super) fn drop_left(tx: &Transaction<'_>, run: i64, at_us: i64) -> Result<()
     insert_alarm(tx, Some(run), &record)
 }
 
-/// Does the work of [`drop_left`] for every run of a rig that was cut off; `source` is `rig` or `simulated`.
+/// Calls [`drop_left`] for every cut-off run of the real (`source` is `rig`) or the simulated rig (`simulated`).
 pub(super) fn drop_cut_off(tx: &Transaction<'_>, source: &str, at_us: i64) -> Result<()> {
     let code = AlarmCode::ScansDropped.name();
     let runs: Vec<i64> = (tx.prepare(CUT_OFF))

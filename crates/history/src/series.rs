@@ -1,9 +1,10 @@
 //! Packed values of closed runs, for statistics over many runs.
 //!
-//! [`Store::close_lot`](super::Store::close_lot) packs the values of production parts that count (a number from the
-//! last attempt, unless this attempt is void) into one blob per parameter of the run: 8 bytes per value instead of the
-//! 31 of an index entry, and no decoding row by row. Filters that select whole runs read the blobs; other filters, and
-//! runs that were never closed, read the index `measurement_value`. Both ways give the same values in the same order.
+//! [`Store::close_lot`](super::Store::close_lot) packs the counted values of production parts into one blob per
+//! parameter of the run; a value counts when it is a number from the last attempt and that attempt is not void. A value
+//! takes 8 bytes instead of the 31 of an index entry, and no decoding row by row. Filters that select whole runs read
+//! the blobs; all other filters, and runs that were never closed, need the index `measurement_value`. Blobs and index
+//! give the same values in the same order.
 
 use super::source::{Read, Source};
 use super::{Archive, Filter};
@@ -90,9 +91,9 @@ fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result
 }
 
 impl Archive {
-    /// Returns the values of `param` in order of judgement, one run after the other; `None` when the filter selects
-    /// only some parts of a run, when parts of two runs alternate in time, and on a
-    /// server, which has no packed values.
+    /// Returns the values of `param` in order of judgement, one run after the other. Returns `None` when the filter
+    /// selects only some parts of a run, when parts of two runs alternate in time, and on a server, which has no packed
+    /// values.
     pub(super) fn side_by_side(&self, param: &str, filter: &Filter) -> Read<Option<Vec<f64>>> {
         let Source::File(file) = &self.source else {
             return Ok(None);

@@ -1,9 +1,9 @@
 //! Where an archive reads: the file of one rig, or a server that holds the histories of many rigs.
 //!
-//! A question is one text in the SQL of the file, and one reading of its rows. A [`Server`] knows the tables of the
-//! file by their names and translates the text. SQL selects and orders; Rust does all arithmetic, so that both give the
-//! same figures to the last digit. Where file and server store rows in different ways, the text of a question depends
-//! on [`Dialect`].
+//! A question is one SQL text, written for the file, and one function that reads its rows. A [`Server`] knows the
+//! tables of the file by their names and translates the text. SQL selects and orders; Rust does all arithmetic, so that
+//! file and server give the same figures to the last digit. Where file and server store rows in different ways, the
+//! text depends on [`Dialect`].
 
 use super::error::{HistoryError, Result};
 pub use rusqlite::types::Value;
@@ -18,7 +18,7 @@ pub type ServerError = Box<dyn std::error::Error + Send + Sync>;
 /// Receives the values of one row; ends the reading with `Break`.
 pub type Receiver<'a> = dyn FnMut(&[Value]) -> ControlFlow<()> + 'a;
 
-/// A server that answers in the words of a history file.
+/// A server that answers SQL written for the tables of a history file.
 pub trait Server: fmt::Debug + Send {
     /// Returns the name for messages, without a password.
     fn name(&self) -> &str;
@@ -33,8 +33,8 @@ pub trait Server: fmt::Debug + Send {
         values: &[Value],
     ) -> std::result::Result<Vec<Vec<Value>>, ServerError>;
 
-    /// Runs a statement and gives its rows to `each`, page by page; the memory needed does not grow with their number. `each`
-    /// may ask further questions.
+    /// Runs a statement and gives its rows to `each`, page by page; the memory needed does not grow with their number.
+    /// `each` may ask further questions.
     ///
     /// # Errors
     /// Fails as [`Self::rows`] does.
@@ -108,7 +108,7 @@ impl Row<'_> {
 }
 
 impl Source {
-    /// Returns the way to the rows.
+    /// Returns how this source stores rows.
     pub const fn dialect(&self) -> Dialect {
         match self {
             Self::File(_) => Dialect::File,
@@ -191,7 +191,7 @@ impl Source {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Returns the connection of a file, for what only the file of a rig has.
+    /// Returns the connection of a file, for questions that only a file can answer; fails on a server.
     pub fn file(&self) -> Result<&Connection> {
         match self {
             Self::File(file) => Ok(file),
@@ -217,8 +217,8 @@ impl Dialect {
         }
     }
 
-    /// Returns a condition by which a server finds the partition of `table` for parts judged from `first_us` to `last_us`;
-    /// nothing for a file, whose tables have no partitions.
+    /// Returns a condition by which a server finds the partition of `table` for parts judged from `first_us` to
+    /// `last_us`; an empty text for a file, whose tables have no partitions.
     pub fn judged(self, table: &str, (first_us, last_us): (i64, i64)) -> String {
         assert!(
             first_us <= last_us,

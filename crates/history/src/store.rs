@@ -277,7 +277,7 @@ impl Store {
         })])
     }
 
-    /// Records an alarm, or that it was cleared if `cleared_at_us` is set.
+    /// Records an alarm, or its clearing when `cleared_at_us` is set.
     pub(super) fn alarm(&mut self, alarm: &super::AlarmRecord) -> Result<()> {
         self.record(&[Row::Alarm(alarm.clone())])
     }

@@ -1,5 +1,5 @@
-//! Values of one parameter in order of judgement, with their limits: the input of the statistics. They come from the
-//! packed values of closed runs, or else from the index `measurement_value`.
+//! Values of one parameter in order of judgement, with their limits: the input of the statistics. The values come from
+//! the packed values of closed runs, or else from the index `measurement_value`.
 
 use super::error::{Doing, Result};
 use super::source::{Read, Row};

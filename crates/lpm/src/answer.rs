@@ -24,15 +24,15 @@ impl ElementKey {
     }
 }
 
-/// A move of one mover. With equal rotations at start and end it is a straight translation; otherwise the position
-/// changes linearly while the mover turns along the shortest way.
+/// A move of one mover: with equal rotations at start and end, a straight translation; otherwise the position changes
+/// linearly while the mover turns along the shortest way.
 #[derive(Debug, Clone, Copy)]
 pub struct Move<'a> {
     /// Pose of the mover at the start.
     pub from: Pose,
     /// Pose of the mover at the end.
     pub to: Pose,
-    /// Margin, mm, >= 0: during the whole move the distance to every element must exceed it.
+    /// Margin, mm, >= 0: the distance to every element must exceed this margin during the whole move.
     pub margin_mm: f64,
     /// Elements that the check leaves out.
     pub ignore: &'a [ElementKey],
@@ -82,11 +82,11 @@ pub struct Contact {
 /// Least distance from the mover to any element over a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
-    /// Least distance, mm; 0 when the bodies meet. It exceeds the true distance by at most 1e-9 mm for straight moves,
-    /// and by at most 5e-4 mm for turning ones.
+    /// Least distance, mm; 0 when the bodies meet. The value exceeds the true distance by at most 1e-9 mm for straight
+    /// moves, and by at most 5e-4 mm for turning moves.
     pub distance_mm: f64,
     /// Element with this distance.
     pub nearest: ElementKey,
-    /// Fraction of the move, 0 to 1, at which this element is nearest; any such fraction when there are several.
+    /// Fraction of the move, 0 to 1, at which `nearest` has this distance; any such fraction when there are several.
     pub t: f64,
 }

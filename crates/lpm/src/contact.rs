@@ -41,7 +41,8 @@ pub(crate) struct Found {
 /// How a contact was found, with the data from which its place and normal follow.
 #[derive(Debug, Clone)]
 enum Evidence {
-    /// Index of the piece of the mover. Both pieces are upright, so a closed form gives place and normal.
+    /// Index of the piece of the mover; this piece and that of the element are upright, so a closed form gives place
+    /// and normal.
     Closed(u32),
     /// Result of a search. Boxed, so that the closed forms, which are more frequent, stay small.
     Searched(Box<Gap>),
@@ -109,8 +110,8 @@ impl Findings<'_> {
         Self::into(wanted, Vec::new())
     }
 
-    /// Starts with no contact found, and lists elements in `met`, which must be empty: so several questions share its
-    /// memory.
+    /// Starts with no contact found, and lists elements in `met`, which must be empty; several questions can share the
+    /// memory of `met`.
     #[inline]
     pub(crate) fn into(wanted: Wanted, met: Vec<ElementKey>) -> Self {
         Findings {
@@ -162,8 +163,8 @@ struct Search<'a, 'b> {
 /// Number of pieces that [`Recent`] remembers: as many as squares lie side by side across a path.
 const REMEMBERED: usize = 16;
 
-/// The pieces checked last, for [`Wanted::Every`]. The walk shows a piece once for each of its squares, in close
-/// succession.
+/// The pieces checked last, for [`Wanted::Every`]. The walk visits a piece once for each square that the piece covers,
+/// in close succession.
 struct Recent {
     pieces: [u32; REMEMBERED],
     next: usize,
@@ -189,7 +190,7 @@ impl Recent {
 
 impl Visit for Search<'_, '_> {
     /// Returns true when the question asks for the first contact: pieces then wait as candidates, so that the search
-    /// checks them in order. For any contact it checks them at once.
+    /// checks them in order. When the question asks for any contact, the search checks pieces at once.
     #[inline]
     fn in_order(&self) -> bool {
         self.found.wanted == Wanted::First
@@ -331,7 +332,7 @@ impl Passage<'_> {
             return Some((t, None));
         }
         // Heights and footprints are each within the margin, but the diagonal distance over an edge may still exceed
-        // it.
+        // the margin.
         let (element, mover) = (element.piece(), mover.piece());
         let hit = straight::first_within(&element, &mover, run.way, margin, t, until)?;
         Some((hit.t, Some(hit.gap)))

@@ -2,9 +2,10 @@
 //! "clear".
 //!
 //! The library has no clock, no file access and no settings of its own. Lengths are in millimetres, frames are
-//! right-handed, z points up. [`Model`] holds the stationary elements. Four questions check a [`Move`] of a [`Mover`] or
-//! a [`Shape`] against them: [`Model::any_hit`] (is there any contact?), [`Model::every_hit`] (with which elements?),
-//! [`Model::first_contact`] and [`Model::clearance`]. [`Model::first_forbidden`] applies a [`Permission`] to each pair of mover and element.
+//! right-handed, z points up. [`Model`] holds the stationary elements. Four questions check a [`Move`] of a [`Mover`]
+//! or a [`Shape`] against these elements: [`Model::any_hit`] (is there any contact?), [`Model::every_hit`] (with which
+//! elements?), [`Model::first_contact`] and [`Model::clearance`]. [`Model::first_forbidden`] applies a [`Permission`]
+//! to each pair of mover and element.
 //!
 //! ```
 //! use lpm::{Model, Move, Pose, Shape};
@@ -42,8 +43,9 @@
 //! The broad phase follows Peng and others (2010), sections 3 and 4. A checking space Omega over the baseplate is as
 //! high as its elements and is cut into layers `{h1, h2, V, B}`; elements are inserted and removed one by one. The
 //! broad phase tests layer, silhouette and oriented box, in this order, and stops at the first miss. The layout of `V`,
-//! the choice of layers and everything after the broad phase are this library's own. It has no separate test of the
-//! oriented box, but tests the piece itself: in closed form (`meeting`, `touch`) or by a separating plane (`distance`).
+//! the choice of layers and everything after the broad phase are this library's own. The library has no separate test
+//! of the oriented box: it tests the piece itself, in closed form (`meeting`, `touch`) or by a separating plane
+//! (`distance`).
 //!
 //! # Continuous and exact checks
 //! The paper checks poses (`rest`); this library also checks paths. For upright blocks and cylinders on a straight

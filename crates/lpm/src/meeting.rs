@@ -27,7 +27,7 @@ const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 const GRAZED_MM: f64 = 1e-7;
 
 /// Distance from the end of a round corner within which a contact is not refined, mm, because beyond that end a side
-/// may come first. It exceeds all rounding.
+/// may come first; larger than all rounding.
 const ROUND_MM: f64 = 1e-3;
 
 /// A straight path, with the reciprocals of its displacement.
@@ -126,7 +126,8 @@ impl<'a> Meeting<'a> {
         )
     }
 
-    /// Returns the footprint whose axes the sum of both has; `None` for two rectangles turned against each other.
+    /// Returns the footprint whose axes the sum of both footprints has; `None` for two rectangles turned against each
+    /// other.
     #[inline]
     fn framed(&self) -> Option<&'a Prism> {
         match (self.element.radius > 0.0, self.mover.radius > 0.0) {
@@ -148,7 +149,7 @@ impl<'a> Meeting<'a> {
         Some(self.grazed(framed, t).unwrap_or(t))
     }
 
-    /// Does the same for the grown figures: without refining a grazing contact.
+    /// Returns the fraction that [`Self::rounded`] returns, but without refining a grazing contact.
     #[inline]
     fn grown_figures(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
@@ -254,8 +255,8 @@ impl<'a> Meeting<'a> {
     }
 }
 
-/// Returns an upper bound of the rounding error for an element and a piece of a mover whose centres lie `apart`, mm: the
-/// error of both positions, plus that of the distances computed from `apart`.
+/// Returns an upper bound of the rounding error, mm, for an element and a piece of a mover whose centres lie `apart`:
+/// the error of both positions, plus that of the distances computed from `apart`.
 #[inline]
 pub(crate) fn slack(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
     NOISE * (element.span + mover.span) + ROUNDING * reach(apart)

@@ -9,7 +9,7 @@ use super::shape::{Flaw, Shape};
 use super::space::{Filling, Space};
 use super::stationary::{NONE, Pieces};
 
-/// The stationary elements. Each can be inserted and removed alone; nothing is rebuilt.
+/// The stationary elements. Inserting or removing one element rebuilds nothing.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
     slots: Vec<Slot>,
@@ -25,7 +25,7 @@ pub struct Model {
 #[derive(Debug, Clone)]
 struct Slot {
     generation: u32,
-    /// Number of its first piece; [`NONE`] for a free slot.
+    /// Number of the first piece of the element; [`NONE`] for a free slot.
     first: u32,
     id: Name,
     /// Enclosed spaces of an element with a mesh.
@@ -203,8 +203,8 @@ impl Model {
         self.slots[slot as usize].first
     }
 
-    /// Returns a point of one body, the element in a slot or `other`, that lies inside the other body; `None` without
-    /// one. Such bodies need not touch with their surfaces.
+    /// Returns a point of one body, the element in a slot or `other`, that lies inside the other body, even if their
+    /// surfaces do not touch; `None` without such a point.
     pub(crate) fn shared_point(&self, slot: u32, other: &Interior) -> Option<[f64; 3]> {
         let slot = &self.slots[slot as usize];
         match &slot.interior {

@@ -74,8 +74,8 @@ impl Model {
     /// Returns the first violation of a permission on a move; `None` is proof that the move is allowed.
     ///
     /// An element that `permissions` omits must not be touched. `passing` gets a depth (mm) and returns the move with a
-    /// mover thinned by this depth ([`Shape::less`]). The model calls it once for each distinct permission, even when
-    /// the depth is the same.
+    /// mover thinned by this depth ([`Shape::less`]). The model calls `passing` once for each distinct permission, even
+    /// when the depth is the same.
     ///
     /// # Errors
     /// Fails as `passing` does.

@@ -40,7 +40,7 @@ pub(crate) struct Piece {
     pub(crate) frame: Frame,
     pub(crate) form: Form,
     /// Sum of the magnitudes that were rounded when centre and extents were computed, mm; rounding errors scale with
-    /// it. A place that was reached by exact sums adds nothing.
+    /// this sum. A place that exact sums have reached adds nothing.
     pub(crate) span: f64,
     /// True for a block or cylinder whose own z axis is exactly vertical, so that closed forms apply.
     pub(crate) upright: bool,

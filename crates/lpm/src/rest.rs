@@ -24,8 +24,8 @@ pub(crate) trait Question {
     type Answer;
     /// Answer when the body meets nothing.
     const CLEAR: Self::Answer;
-    /// Returns the answer when the body may meet an element; `apart` runs from the centre of its piece to that of the
-    /// mover.
+    /// Returns the answer when the body may meet an element; `apart` runs from the centre of `element` to that of
+    /// `mover`.
     fn met(owner: ElementKey, element: &Prism, mover: &Prism, apart: Vec3) -> Self::Answer;
     /// Returns the general answer, for any body and any path.
     fn on_the_way(model: &Model, body: &Mover, way: &Move) -> Self::Answer;

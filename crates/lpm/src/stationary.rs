@@ -10,7 +10,7 @@ use super::prism::Prism;
 use super::shape::Shape;
 use super::space::{Cover, Entering};
 
-/// Number that stands for no piece.
+/// Number that means no piece.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A placed stationary piece, in two cache lines.

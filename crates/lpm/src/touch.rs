@@ -111,7 +111,8 @@ fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side 
     }
 }
 
-/// Returns the side for two rectangles turned against each other; on each of them the other may touch one of two sides.
+/// Returns the side for two rectangles turned against each other; each rectangle may touch one of two sides of the
+/// other.
 #[inline(always)]
 fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     let seen = Askew::of(element, mover, apart);
@@ -131,16 +132,16 @@ fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
 
 /// Two rectangles turned against each other, described along the axes of both.
 struct Askew {
-    /// Vector from the element to the mover along the axes of the element, mm; the next field is the same vector along
-    /// those of the mover.
+    /// Vector from the element to the mover along the axes of the element, mm.
     in_element: [f64; 2],
+    /// Vector from the element to the mover along the axes of the mover, mm.
     in_mover: [f64; 2],
     /// First axis of the mover, along the axes of the element: `cos` is its first component, `sin` its second.
     cos: f64,
     sin: f64,
-    /// Distance of the mover beyond the sides of the element, mm; the next field is that of the element beyond the
-    /// sides of the mover.
+    /// Distance of the mover beyond the sides of the element, mm.
     over_element: [f64; 2],
+    /// Distance of the element beyond the sides of the mover, mm.
     over_mover: [f64; 2],
 }
 

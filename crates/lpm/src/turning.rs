@@ -28,8 +28,8 @@ const SAMPLE: f64 = 1.0 / 32.0;
 /// Rounds of ternary search in a valley two samples wide; each round removes a third, which leaves 1e-8 of the move.
 const VALLEY_ROUNDS: usize = 40;
 
-/// Returns the distance beyond the margin that counts as contact, mm; with it, no step of a grazing pass is shorter
-/// than a ten-thousandth of the move.
+/// Returns the distance beyond the margin that counts as contact, mm; with this band, no step of a grazing pass is
+/// shorter than a ten-thousandth of the move.
 fn band_mm(turn: &Turn, rho: f64) -> f64 {
     (0.5e-8 * turn.angle * turn.angle * rho).clamp(1e-7, 5e-4)
 }
@@ -186,10 +186,13 @@ struct Plane<'a> {
     normal: Vec3,
     /// Separation of the plane from the origin of the mover at `h = 0`, minus the rounding bound, mm.
     base: f64,
+    /// Vector from the origin of the mover to the centre of its piece, mm.
     arm: Vec3,
-    /// Change of this separation per unit of `h`, mm; the next field is the change of the direction of support.
+    /// Change of `base` per unit of `h`, mm.
     rate: f64,
+    /// Change of the direction of support per unit of `h`.
     swing: Vec3,
+    /// Bound of the second-order term, mm per unit of `h^2`.
     bend: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The assembly: its elements at their places, the space Omega around them, and the collision model of both.
+//! The assembly: its elements at their places, the space Omega around them, and the collision model of the elements.
 
 use crate::direction::Direction;
 use crate::error::PlanError;
@@ -47,8 +47,8 @@ pub struct Guided {
     pub a: usize,
     /// Number of the other element.
     pub b: usize,
-    /// Axis along which they come apart, 0 to 2; across it they block each other. Without an axis the pair never
-    /// blocks.
+    /// Axis along which the elements come apart, 0 to 2; across the axis they block each other. `None`: the two never
+    /// block each other.
     pub axis: Option<usize>,
 }
 
@@ -61,7 +61,7 @@ pub struct Assembly {
     tolerance: Tolerance,
     guided: Vec<Guided>,
     numbers: HashMap<String, usize>,
-    /// Subtracted from every position, so that ways out of Omega stay within what the collision core can decide, mm.
+    /// Subtracted from every position, mm, so that ways out of Omega stay within the range of the collision core.
     origin: [f64; 3],
     movers: Vec<Mover>,
     model: Model,
@@ -127,7 +127,7 @@ impl Assembly {
         Ok(assembly)
     }
 
-    /// Returns the elements in their order; tables and steps name them by their number in it.
+    /// Returns the elements; tables and steps name an element by its index in this slice.
     pub fn elements(&self) -> &[Element] {
         &self.elements
     }
@@ -150,7 +150,7 @@ impl Assembly {
     /// Returns the number of the element with this id.
     ///
     /// # Errors
-    /// Fails when no element has it; `demand` names the demand that asks for it.
+    /// Fails when no element has this id; the error then names `demand`, the demand with the id.
     pub fn number(&self, id: &str, demand: &'static str) -> Result<usize, PlanError> {
         self.numbers
             .get(id)
@@ -220,7 +220,7 @@ impl Assembly {
     }
 
     /// Returns the elements that an element meets on a straight way that begins at `from` (a displacement from its
-    /// place, mm), in the order of their numbers. Leaves out elements that guide it, or that it guides.
+    /// place, mm), in the order of their numbers. Leaves out the elements with which it is guided.
     ///
     /// # Errors
     /// Fails when the collision core cannot decide the move.

@@ -1,8 +1,8 @@
 //! The search for an order with the fewest changes of direction.
 //!
-//! Once a direction is chosen, everything that can leave in it does: leaving never blocks another unit, so an order with
-//! the fewest changes exists among those that empty each direction before they change it. The search goes level by
-//! level, a level per change, and knows each state (what is in place, last direction) once.
+//! Once a direction is chosen, everything that can leave in this direction does. Leaving never blocks another unit, so
+//! an order with the fewest changes exists among the orders that empty each direction before they change it. The search
+//! goes level by level, a level per change, and visits each state (what is in place, last direction) once.
 
 use crate::direction::Direction;
 use crate::problem::{Problem, Taken};
@@ -47,7 +47,7 @@ impl Node<'_> {
     }
 }
 
-/// Returns an order in which every unit leaves that has to, with the fewest changes found; `None` when units are
+/// Returns an order in which every unit that must leave does so, with the fewest changes found; `None` when units are
 /// locked.
 pub(crate) fn fewest_changes(problem: &Problem) -> Option<FewChanges> {
     let mut all = Remaining::all(problem);
@@ -97,8 +97,8 @@ fn followers<'a>(problem: &Problem, node: &Node<'a>) -> Vec<(u32, Node<'a>)> {
         }
         let next = node.clone().along(direction);
         if next.order.len() > node.order.len() {
-            // The start of an order is level 0 and its first direction costs nothing; counting it as one more for
-            // every order keeps the levels ascending.
+            // The start of an order is level 0 and its first direction costs nothing; counting this direction as one
+            // more change in every order keeps the levels ascending.
             found.push((1, next));
         }
     }

@@ -36,12 +36,12 @@ pub enum Planned {
     Changeover(Box<Changeover>),
     /// Elements of the first assembly lock each other.
     LockedFrom(LockedElements),
-    /// Elements of the second assembly lock each other: it cannot be put together.
+    /// Elements of the second assembly lock each other, so the second assembly cannot be put together.
     LockedTo(LockedElements),
 }
 
 /// Plans the change from the assembly of one planner to that of another. `demands` gives what stays, the groups and the
-/// forbidden directions; ids that only one assembly has count there.
+/// forbidden directions; an id that only one assembly has applies to that assembly.
 ///
 /// # Errors
 /// Fails as [`Planner::disassembly`] does, and when a demand names an id that neither assembly has.
@@ -96,7 +96,7 @@ fn differing(one: &Assembly, other: &Assembly) -> BTreeSet<String> {
     differing.map(|it| it.id.clone()).collect()
 }
 
-/// Plans what comes off one of the two assemblies; nothing when nothing has to.
+/// Plans the disassembly of one of the two assemblies; `None` when nothing has to come off.
 fn side(
     planner: &Planner,
     demands: &Demands,
@@ -108,7 +108,7 @@ fn side(
     if remove.is_empty() {
         return Ok(Ok(None));
     }
-    // An id that only the other assembly has means nothing here.
+    // An id that only the other assembly has does not apply to this one.
     let known = |id: &String| is_named(planner, id) || !is_named(other, id);
     let mut of_side = Demands {
         remove,

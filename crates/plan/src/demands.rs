@@ -4,7 +4,7 @@ use crate::assembly::Assembly;
 use crate::direction::Direction;
 use crate::error::PlanError;
 
-/// Demands on a plan, by ids; an id that ends with `*` stands for every element whose id begins like it.
+/// Demands on a plan, by ids; an id that ends with `*` means every element whose id begins with the text before `*`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Demands {
     /// Elements that must come off; when empty, everything that does not stay.
@@ -18,9 +18,9 @@ pub struct Demands {
     /// True when a plan takes straight ways and given units only: no ways of two steps, no subassemblies that the
     /// planner finds.
     pub straight_only: bool,
-    /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element rests
-    /// on what holds it from below. Two that hold each other from below, such as a rod in its cylinder, do not rest on
-    /// each other.
+    /// True when nothing may leave while another element rests on it, so that nothing hangs in the air. An element
+    /// rests on what holds it from below. Two elements that hold each other from below, such as a rod in its cylinder,
+    /// do not rest on each other.
     pub keeps_supports: bool,
 }
 

@@ -1,7 +1,7 @@
 //! Boxes around bodies: how far they reach along the axes of the frame.
 //!
-//! Boxes are rounded outward by [`ROUNDING`], so a body is never larger than its box. They say when a body has left the
-//! space Omega, and they are what the box extrusion of the paper sweeps.
+//! Boxes are rounded outward by [`ROUNDING`], so a body is never larger than its box. A body has left the space Omega
+//! when its box has; the box extrusion of the paper sweeps boxes in place of bodies.
 
 use lpm::{Pose, Shape};
 

@@ -1,7 +1,7 @@
-//! The sequence of the paper: the direction that frees most comes first.
+//! The rule of the paper: the direction in which most units can leave comes first.
 //!
-//! The rule takes priority directions before all others, and each direction once, until nothing more leaves in it. The
-//! rule can end with elements in place although an order exists; the searches then take over.
+//! The rule takes priority directions before all others, and each direction once, until nothing more leaves in that
+//! direction. The rule can end with elements in place although an order exists; the searches then take over.
 
 use crate::direction::Direction;
 use crate::problem::{Problem, Taken};
@@ -37,7 +37,7 @@ pub fn greedy(problem: &Problem, priority: &[Direction]) -> Greedy {
                 let order = after.remove_along(*direction);
                 (*direction, order, after)
             });
-            // Of directions that free equally much, the first of the set wins.
+            // Of directions in which equally many units leave, the first of the set wins.
             let best = tried.reduce(|a, b| if b.1.len() > a.1.len() { b } else { a });
             let Some((direction, order, after)) = best.filter(|it| !it.1.is_empty()) else {
                 break;

@@ -1,8 +1,8 @@
 //! Shorter ways for an order of many units whose changes of direction are already few.
 //!
 //! The order is a row of runs, each in one direction. A unit may leave in another run when all blockers of that way
-//! leave earlier and every unit that it blocks leaves later. Each move to a run with a shorter way shortens the order;
-//! it never adds a change of direction.
+//! leave earlier and every unit that it blocks leaves later. Each move of a unit to a run with a shorter way shortens
+//! the order and never adds a change of direction.
 
 use crate::direction::Direction;
 use crate::problem::{Problem, Taken};

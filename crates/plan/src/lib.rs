@@ -1,9 +1,9 @@
 //! Interference tables of an assembly, and the order in which its elements come off and go on.
 //!
 //! [`Assembly`] holds elements at their places. [`Interference`] lists what each element meets on its way out of the
-//! space Omega, in each of six directions; [`Planner`] makes a [`Sequence`] of it that takes the assembly apart, or
-//! names the elements that lock each other. [`verified`] moves every step through the collision core with everything
-//! else in place. Lengths are in millimetres. The library has no clock, no file and no settings of its own.
+//! space Omega, in each of six directions. From this table [`Planner`] makes a [`Sequence`] that takes the assembly
+//! apart, or names the elements that lock each other. [`verified`] moves every step through the collision core with
+//! everything else in place. Lengths are in millimetres. The library has no clock, no file and no settings of its own.
 //!
 //! ```
 //! use lpm::{Pose, Shape};
@@ -36,6 +36,9 @@
 //! ```
 //!
 //! # Files
+//! *The paper* is the published method that the library improves: extruded boxes, and the direction that frees most
+//! first.
+//!
 //! | files | what they hold |
 //! |---|---|
 //! | `assembly`, `extent`, `thinned` | elements, their boxes, their bodies with the contact depth taken off |

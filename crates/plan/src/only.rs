@@ -1,7 +1,7 @@
 //! The fewest units that must come off so that wanted ones can.
 //!
-//! Each wanted unit needs one way whose blockers leave before it, each by a way of its own. The search chooses a way for
-//! one open unit after the other and gives up a branch when it cannot beat the fewest units found so far.
+//! Each wanted unit needs one way whose blockers leave before it, each by a way of its own. The search chooses a way
+//! for one open unit after the other and gives up a branch when it cannot beat the fewest units found so far.
 
 use crate::problem::Problem;
 

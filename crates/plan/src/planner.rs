@@ -17,7 +17,7 @@ use crate::shortest::best_order;
 use crate::table::Interference;
 use crate::ways::{Units, straight, two_step};
 
-/// The interference tables of an assembly; it makes plans from them.
+/// Makes plans from the interference tables of an assembly.
 #[derive(Debug, Clone)]
 pub struct Planner<'a> {
     assembly: &'a Assembly,
@@ -320,9 +320,9 @@ impl Making<'_> {
     }
 }
 
-/// Returns the cheapest order found; `None` when units are locked. For few units this is the best order; for many it is
-/// one with few changes of direction, whose ways a search has shortened. Prefers the order of the rule of the paper
-/// where it is as cheap.
+/// Returns the cheapest order found; `None` when units are locked. For few units this is the best order; for many units
+/// it is an order with few changes of direction, whose ways a search has shortened. Of two equally cheap orders,
+/// returns the one that the rule of the paper gives.
 pub fn ordered(problem: &Problem, priority: &[Direction]) -> Option<Ordered> {
     let found = fewest_changes(problem)?;
     let (order, is_fewest_changes) = match best_order(problem) {

@@ -103,7 +103,7 @@ impl<'a> Remaining<'a> {
         order
     }
 
-    /// Removes everything that can leave straight in one direction and returns it in its order.
+    /// Removes every unit that can leave straight in one direction and returns them in their order.
     pub fn remove_along(&mut self, direction: Direction) -> Vec<Taken> {
         let problem = self.problem;
         self.remove_all(|taken| {
@@ -112,7 +112,8 @@ impl<'a> Remaining<'a> {
         })
     }
 
-    /// Removes everything that can leave on any way and returns it in its order. What is left then is locked.
+    /// Removes every unit that can leave on any way and returns them in their order. Units that are left then are
+    /// locked.
     pub fn remove_removable(&mut self) -> Vec<Taken> {
         self.remove_all(|_| true)
     }

@@ -10,7 +10,7 @@ pub struct Step {
     pub elements: Vec<usize>,
     /// Straight legs in the order of the move.
     pub legs: Vec<Leg>,
-    /// For a step on the bench: the step, by its place in the disassembly, in which the subassembly left as a whole.
+    /// For a step on the bench: the index, in the disassembly, of the step in which the subassembly left as a whole.
     pub bench: Option<usize>,
 }
 
@@ -32,7 +32,7 @@ pub struct Sequence {
     pub method: Method,
     /// True when no sequence of these ways has fewer changes of direction.
     pub is_fewest_changes: bool,
-    /// True when nothing fewer than these elements could come off; false when the search for fewer ended early.
+    /// True when no plan takes off fewer elements; false when the search for fewer ended early.
     pub is_fewest_elements: bool,
 }
 

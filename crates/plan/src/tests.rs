@@ -22,7 +22,7 @@ fn element(id: &str, shape: Shape, position: [f64; 3]) -> Element {
     }
 }
 
-/// Makes a block of its least and greatest corner.
+/// Makes a block from its least and its greatest corner.
 fn between(id: &str, low: [f64; 3], high: [f64; 3]) -> Element {
     let half = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
     let middle = [0, 1, 2].map(|axis| 0.5 * (high[axis] + low[axis]));

@@ -2,9 +2,9 @@
 //!
 //! The collision core counts touching as contact, so a body that lies on another one could never move along it. Each
 //! body gives up half of the contact depth on every face; two bodies then meet only where they press into each other by
-//! more than the depth. Blocks, cylinders and compounds become thinner as [`Shape::less`] does it. The faces of a closed
-//! mesh move inward: each corner goes to where the moved planes of its triangles meet. An open mesh has no inside and
-//! stays as it is, so an open mesh in contact with another one is blocked.
+//! more than the depth. Blocks, cylinders and compounds become thinner as [`Shape::less`] does it. The faces of a
+//! closed mesh move inward: each corner goes to where the moved planes of its triangles meet. An open mesh has no
+//! inside and stays as it is, so an open mesh in contact with another one is blocked.
 
 use lpm::{Mesh, Shape};
 use std::collections::HashMap;
@@ -89,7 +89,7 @@ fn normal(mesh: &Mesh, corners: &[usize; 3], outward: f64) -> Option<[f64; 3]> {
     (size > 0.0).then(|| n.map(|member| outward * member / size))
 }
 
-/// Returns a short shift that brings a corner inside each of its planes by the depth, as nearly as it can.
+/// Returns a short shift that brings a corner inside each of its planes by the depth, as nearly as possible.
 ///
 /// Projects onto one plane after the other; neighbouring planes of a hole with 24 sides are 15 degrees apart, which
 /// shrinks the rest by 7 % a round.

@@ -1,7 +1,7 @@
 //! Verification of a sequence: each step moves through the collision core with everything else in place.
 //!
-//! It uses no table. For each step the model holds exactly what is still on the rig, or on the bench beside the
-//! elements of the step. Clearances are those of the true bodies, without any depth taken off.
+//! The verification uses no table. For each step the model holds exactly the elements that are still on the rig, or on
+//! the bench beside the elements of the step. Clearances are those of the true bodies, without any depth taken off.
 
 use crate::assembly::{Assembly, modelled};
 use crate::error::PlanError;
@@ -14,8 +14,8 @@ pub const RANGE_MM: f64 = 25.0;
 /// Distances of a step that the collision core has found clear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verified {
-    /// Least distance to any element that stays during the step, mm: 0 when the step slides along one; `None` beyond
-    /// [`RANGE_MM`].
+    /// Least distance to any element that stays during the step, mm: 0 when the step slides along an element; `None`
+    /// beyond [`RANGE_MM`].
     pub clearance_mm: Option<f64>,
     /// Elements along which the step slides, in ascending order.
     pub slides_on: Vec<usize>,
@@ -84,7 +84,7 @@ pub fn verified(
     Ok(Ok(found))
 }
 
-/// The true bodies.
+/// The elements with their true bodies, for a check of each step.
 struct Whole<'a> {
     assembly: &'a Assembly,
     model: Model,

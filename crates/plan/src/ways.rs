@@ -1,9 +1,9 @@
 //! Ways of units out of Omega: straight ones from the table, two-step ones where no straight one exists.
 //!
-//! A two-step way goes a distance along one direction, then out along another. Whatever stands still, the distances
-//! worth trying are those at which a piece of the unit has just passed a piece of a blocker: for bodies made of blocks
-//! along the axes, every free second leg begins at one of them. Round and slanted bodies have other distances too,
-//! which the search does not try.
+//! A two-step way goes a distance along one direction, then out along another. The search tries the distances at which
+//! a piece of the unit has just passed a piece of a blocker: for bodies made of blocks along the axes, every free
+//! second leg begins at one of these distances. Round and slanted bodies have other distances too, which the search
+//! does not try.
 
 use crate::assembly::Assembly;
 use crate::direction::Direction;
@@ -152,7 +152,7 @@ pub(crate) fn two_step(
                     blockers,
                 };
                 let wanted = left(&way);
-                // Distances ascend, so a known way is no longer than this one.
+                // Distances ascend, so no known way is longer than this one.
                 let is_known = |it: &Way| left(it).iter().all(|one| wanted.contains(one));
                 if !of_pair.iter().any(is_known) {
                     of_pair.push(way);

@@ -33,7 +33,7 @@ impl Equality {
     }
 }
 
-/// Tests whether the groups have the same mean; `None` with fewer than two groups, or with one that has fewer than two
+/// Tests whether the groups have the same mean; `None` with fewer than two groups, or when a group has fewer than two
 /// values or no spread.
 pub fn means(groups: &[&[f64]]) -> Option<Equality> {
     let k = groups.len() as f64;

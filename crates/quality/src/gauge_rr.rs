@@ -2,8 +2,8 @@
 //!
 //! In a crossed study every operator measures every part the same number of times, at least twice. The analysis splits
 //! the sum of squares among parts, operators, their interaction and the residual. When the F test of the interaction
-//! gives p > 0.25, it pools the interaction with the residual. Negative components of variance count as zero. All
-//! results are standard deviations.
+//! gives p > 0.25, the analysis pools the interaction with the residual. Negative components of variance count as zero.
+//! All results are standard deviations.
 
 use super::crossing;
 use super::squares::{Sizes, Squares};

@@ -22,7 +22,7 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Returns the index of the class of a value; for a value outside all classes, that of the nearest one.
+    /// Returns the index of the class of a value, or of the nearest class for a value outside all classes.
     pub fn class(&self, value: f64) -> usize {
         let class = ((value - self.from) / self.width).floor().max(0.0) as usize;
         class.min(self.counts.len() - 1)
@@ -86,7 +86,7 @@ impl Ordered {
     }
 }
 
-/// Returns the least number, 1, 2 or 5 times a power of ten, that is at least `step`; `None` unless `step` is above
+/// Returns the least number that is 1, 2 or 5 times a power of ten and at least `step`; `None` unless `step` is above
 /// zero.
 pub fn round_step(step: f64) -> Option<f64> {
     if !(step.is_finite() && step > 0.0) {

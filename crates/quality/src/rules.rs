@@ -14,7 +14,8 @@
 //! | 7: all within one deviation | 15 | |
 //! | 8: none within one deviation, on both sides | 8 | |
 //!
-//! A rule gives one signal per pattern, at the point that completes it.
+//! A rule signals at the point that completes its pattern. A pattern of rule 2, 3, 4, 7 or 8 signals once, however many
+//! points follow in it; rules 1, 5 and 6 signal at every point that fits.
 
 use super::chart::Point;
 use serde::{Deserialize, Serialize};
@@ -61,8 +62,8 @@ pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Sig
     found
 }
 
-/// Returns a signal of rule 1 for each point outside its own limits; for charts whose limits differ from point to
-/// point.
+/// Returns a signal of rule 1 for each point outside its own limits. Charts whose limits differ from point to point
+/// need this.
 pub fn beyond_own_limits(points: &[Point]) -> Vec<Signal> {
     let beyond = |it: &Point| it.value > it.high || it.value < it.low;
     let places = points.iter().enumerate().filter(|(_, it)| beyond(it));

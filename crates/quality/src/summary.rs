@@ -12,8 +12,8 @@ pub struct Summary {
     pub param: String,
     /// Number of values.
     pub n: u64,
-    /// Number of tests without a value, for example because the coil current was over range; `None` when it is not
-    /// known how many tests should have one.
+    /// Number of tests without a value, for example because the coil current was over range; `None` when the number of
+    /// tests that should have a value is unknown.
     pub without_value: Option<u64>,
     /// Mean.
     pub mean: Option<f64>,
@@ -33,7 +33,7 @@ pub struct Summary {
     pub cpk: Option<f64>,
     /// One-sided lower 95 % confidence bound of `cpk`.
     pub cpk_low95: Option<f64>,
-    /// Ppk, with `sd`.
+    /// Ppk, with the standard deviation `sd`.
     pub ppk: Option<f64>,
 }
 

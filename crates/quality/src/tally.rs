@@ -21,7 +21,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Adds a value; ignores one that is not finite.
+    /// Adds a value; ignores a value that is not finite.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
             return;

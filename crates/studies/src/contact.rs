@@ -3,8 +3,8 @@
 //!
 //! - Error is the difference from the true resistance of the closures that the rig read. Every world here has a thermal
 //!   EMF of 10 uV (1 sd).
-//! - Repeatability is the scatter over repeated tests of the same bodies. Films on the contact cause nearly all of it,
-//!   and it falls with the square root of the number of closures.
+//! - Repeatability is the scatter over repeated tests of the same bodies. Films on the contact cause nearly all of this
+//!   scatter, which falls with the square root of the number of closures.
 //! - Seconds are the rig time of all stages that read a contact; the same stages also measure times and bounce.
 
 use super::figure::{Figure, rms};
@@ -29,8 +29,8 @@ const CONTACTS: [(&str, TimedParameter); 2] = [
 ];
 /// Thermal EMF of a part, microvolts (1 sd).
 const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
-/// Drift of the EMF, microvolts per second: so fast that it adds more error than noise does to a method with two
-/// polarities.
+/// Drift of the EMF, microvolts per second: so fast that the drift adds more error than noise does to a method with
+/// two polarities.
 const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
 /// Number of passes of each body in the comparison of films.
 const PASSES: u64 = 6;

@@ -20,7 +20,8 @@ use quality::spread::median;
 /// Greatest permitted time of the longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
 /// Greatest permitted time of the longest test of a good solid-state relay, seconds of rig time, for a DC and for an AC
-/// load, without references, searches without expectation (both only at the begin of a lot) and repetitions.
+/// load. The time excludes repetitions and what occurs only at the start of a lot: references, and searches without an
+/// expected value.
 const DC_TEST_S: f64 = 1.0;
 const AC_TEST_S: f64 = 1.5;
 /// Number of parts from which the overshoot model ([`machine::dut::em_relay::overshoot`]) starts the fine ramps close

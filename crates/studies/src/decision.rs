@@ -57,8 +57,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("decision", about, groups, chart))
 }
 
-/// Predicts the false rejects and accepts of one characteristic by the decision rule. Returns a row in parts per million
-/// with and without guard band, and the probabilities of a false accept and of a false reject with guard band.
+/// Predicts the false rejects and accepts of one characteristic by the decision rule. Returns a row in parts per
+/// million with and without guard band, and the probabilities of a false accept and of a false reject with guard band.
 fn predicted(
     characteristic: Characteristic,
     limits: &RangeInclusive<f64>,

@@ -1,7 +1,7 @@
 //! Errors of one characteristic against the truth, over good parts.
 //!
-//! An error is in the unit that the kind of part states for it ([`ErrorUnit`]). The uncertainty U (k = 2) of a value covers the truth when `|value - truth| <= U`; a value
-//! without an uncertainty does not cover it.
+//! The kind of part states the unit of the error of each characteristic ([`ErrorUnit`]). The uncertainty U (k = 2) of a
+//! value covers the truth when `|value - truth| <= U`; a value without an uncertainty does not cover the truth.
 
 use super::figure::percent;
 use super::lot::{Lot, Part, Reading};

@@ -148,8 +148,8 @@ pub fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
     mean(values.map(|it| it * it)).map(f64::sqrt)
 }
 
-/// Formats a value without an exponent: to five significant digits, but with the whole integer part, at most six decimals,
-/// and no decimals for whole numbers below 1e9. Returns "-" for NaN and infinity.
+/// Formats a value without an exponent: to five significant digits, but with the whole integer part, at most six
+/// decimals, and no decimals for whole numbers below 1e9. Returns "-" for NaN and infinity.
 pub fn shown(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".into() } else { "-".into() };

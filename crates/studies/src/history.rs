@@ -176,8 +176,8 @@ const PLAIN: &str = "SELECT total(m.value) FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE parameter.key = ?1 AND m.population = 'lot'";
 
-/// Returns a filter for the parts that passed. With it, the history must read single values instead of the packed
-/// values of whole runs.
+/// Returns a filter for the parts that passed. With this filter, the history must read single values instead of the
+/// packed values of whole runs.
 fn good() -> Filter {
     Filter {
         verdict: Some("pass".to_owned()),

@@ -12,10 +12,10 @@
 //! - No figure mixes rig time (time of the simulated rig) and wall time: wall time appears only in `collision`,
 //!   `fleet`, `history`, `pace`, `plan`, `storm` and `transient`.
 //!
-//! `chamber`, `collision`, `plan`, `ssr`, `thermostat` and `transient` run no lot of the rig. `chamber` and `thermostat`
-//! run the arithmetic of the controller on the simulated chamber, `ssr` on a model of its signals. `collision` compares
-//! ways to check a move with the exact truth, `plan` compares orders of tooling with brute force, `transient` integrates
-//! the relay model of the simulated rig.
+//! `chamber`, `collision`, `plan`, `ssr`, `thermostat` and `transient` run no lot of the rig. `chamber` and
+//! `thermostat` run the arithmetic of the controller on the simulated chamber, `ssr` on a model of its signals.
+//! `collision` compares ways to check a move with the exact truth, `plan` compares orders of tooling with brute force,
+//! `transient` integrates the relay model of the simulated rig.
 //!
 //! [`figures`] runs a plan of studies and benchmarks and writes their figures as one document.
 //!

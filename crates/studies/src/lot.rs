@@ -1,7 +1,7 @@
 //! The rows of one lot, joined with the truth about its parts.
 //!
-//! [`Lot::read`] joins two files of one run by `seq`: the rows of `run --json` and the truth of `--truth`, both one
-//! JSON object per line. It ignores unknown keys, so that either file may grow.
+//! [`Lot::read`] joins two files of one run by `seq`, each with one JSON object per line: the rows of `run --json` and
+//! the truth of `--truth`. [`Lot::read`] ignores unknown keys, so that later versions may add keys to either file.
 
 use anyhow::{Context, bail};
 use machine::dut::Characteristic;
@@ -22,7 +22,7 @@ pub struct Part {
     /// Reasons for a verdict other than `pass`.
     #[serde(default)]
     pub reasons: Vec<String>,
-    /// Values by key; those that are no number say whether a part conforms.
+    /// Values by key; a value that is not a number states whether the part conforms.
     #[serde(default)]
     values: BTreeMap<String, Value>,
     #[serde(default)]
@@ -129,7 +129,7 @@ impl Part {
 /// Figures of a lot as a whole.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Summary {
-    /// Alarms raised.
+    /// Number of alarms that the lot raised.
     pub alarms: u64,
     /// Writes to any EEPROM during the lot; `None` when the run did not count them.
     pub eeprom_writes: Option<u64>,
@@ -156,7 +156,7 @@ pub struct BrokenPromise {
     pub after_parts: u64,
 }
 
-/// One lot.
+/// A lot on the simulated rig, with the truth about its parts.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lot {
     /// Seed of rig and lot.

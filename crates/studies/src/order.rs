@@ -134,8 +134,8 @@ impl Order {
         command
     }
 
-    /// Returns the command `action` on the simulated rig, with recipe, world and faults of the order. It answers in
-    /// JSON and logs only errors.
+    /// Returns the command `action` on the simulated rig, with recipe, world and faults of the order. The command
+    /// answers in JSON and logs only errors.
     pub fn rig_command(&self, action: &str, db: &Path, seed: u64) -> Command {
         let mut command = self.command(db, "error");
         command.args([action, "--sim", "--json", "--recipe", &self.recipe.name]);

@@ -1,5 +1,5 @@
-//! The studies with one figure per characteristic: accuracy and coverage. Below these figures the report shows in which bins
-//! the parts ended, the alarms, errors and EEPROM writes, and the parts worth a look.
+//! The studies with one figure per characteristic: accuracy and coverage. Below these figures the report shows in which
+//! bins the parts ended, the alarms, errors and EEPROM writes, and the parts worth a look.
 //!
 //! - Accuracy: the bar applies to the rms error over good parts, as a median over lots. Further columns have the worst
 //!   lot, the bias (median over lots of the mean error), the greatest error of any part and the pooled coverage.
@@ -76,7 +76,8 @@ fn study(
     mut chart: Chart,
 ) -> anyhow::Result<Report> {
     let lots: Vec<Lot> = order.run_all()?;
-    // One without limits and without values is not measured; one with limits and without values misses its bar.
+    // The recipe does not measure a characteristic without limits and values; one with limits but no values misses its
+    // bar.
     let limited = |it| order.recipe.limits.named().any(|(known, _)| known == it);
     let measured = |it: &(Characteristic, Pooled)| it.1.n() > 0 || limited(it.0);
     let of = |it: Characteristic| (it, Pooled::of(it, &lots));

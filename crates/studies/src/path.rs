@@ -1,7 +1,7 @@
 //! The critical path of a cycle, and how close the line comes to it.
 //!
-//! The nest is never idle between one nest exit and the next: the pusher pushes the next part in, the jaws clamp it
-//! and the probes rise while the pusher returns, the test runs, the fingers grip while the probes go down, the jaws open
+//! The nest is never idle between one nest exit and the next: the pusher pushes the next part in, the jaws clamp it and
+//! the probes rise while the pusher returns, the test runs, the fingers grip while the probes go down, the jaws open
 //! and z lifts the part. Each of these strokes waits for the previous one; all others (escapement, the way to the bin
 //! and back, z down) overlap with them. No overlap can make a cycle shorter than the sum of the mean travel times of
 //! the path and the mean test.
@@ -17,7 +17,7 @@ const PARTS_PER_HOUR: f64 = 2100.0;
 /// The line must make at least this share of the parts per hour that the critical path permits.
 const SHARE: f64 = 0.95;
 
-/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes it takes the longer time.
+/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes, the longer time.
 fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 5] {
     [
         ("path: pusher to the nest", mechanism.pusher_ms),

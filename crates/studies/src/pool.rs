@@ -11,7 +11,7 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Calls `work` for every item on at most `threads` threads. After a failure it begins no further item.
+/// Calls `work` for every item on at most `threads` threads. Begins no further item after a failure.
 ///
 /// # Errors
 /// Fails with the first failure of `work`, in the order of the items.

@@ -3,8 +3,8 @@
 //! Values of the process and errors of the measurement are normally distributed. The guard band w is `guard` times the
 //! expanded uncertainty U (k = 2). The decision rule accepts a first reading that lies inside the limits by at least w,
 //! and rejects one that lies outside by at least w. In between, the rig measures the part again, and the rule accepts
-//! it only if the mean of all readings lies inside the limits by at least the guard band of that mean. The first reading
-//! and the mean share the systematic error; the first reading has more noise, which averaging reduces.
+//! it only if the mean of all readings lies inside the limits by at least the guard band of that mean. The first
+//! reading and the mean share the systematic error; the first reading has more noise, which averaging reduces.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::RangeInclusive;

@@ -162,7 +162,7 @@ impl Area {
     }
 
     /// Returns the area for a label of this width beside its point: the free area inside the plot nearest to the height
-    /// of the point, right before left. Without a free area the label goes above its point.
+    /// of the point; at equal distance the right side comes first. Without a free area the label goes above its point.
     fn beside([x, y]: [f64; 2], width: f64, taken: &[Self]) -> Self {
         let label = |step: f64, left: f64| {
             let top = y - LINE / 2.0 + step * LINE / 2.0;

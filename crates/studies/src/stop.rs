@@ -1,11 +1,11 @@
 //! Reaction time of motion outputs to the emergency stop, pressed at every instant of a cycle and of homing.
 //!
 //! Every lot is a script (`relayrig story`) that presses the stop again and again, each time a little later: after a
-//! part leaves the nest, or after the reset of a line that was stopped in the middle of a test. Each time it releases
-//! the stop, clears, resets and starts the line again. The journal of the simulated rig gives the instants at which the
-//! emergency-stop contact opens and the last motion output goes off. The bound of the reaction time follows from
-//! `rig.toml` and holds for any delay or loss of one transaction; every second lot therefore runs with replies at the
-//! end of their timeout.
+//! part leaves the nest, or after the reset of a line that was stopped in the middle of a test. Each time the script
+//! then releases the stop, clears, resets and starts the line. The journal of the simulated rig gives the instants at
+//! which the emergency-stop contact opens and the last motion output goes off. The bound of the reaction time follows
+//! from `rig.toml` and holds for any delay or loss of one transaction; every second lot therefore runs with replies at
+//! the end of their timeout.
 
 mod reaction;
 mod sweep;

@@ -1,5 +1,5 @@
-//! Error of times and bounces: how much a counter latch that ends the count at the first make reduces it, and what
-//! reference clock, gate delay and bus add.
+//! Error of times and bounces: how much a counter latch that ends the count at the first make reduces the error, and
+//! what reference clock, gate delay and bus add.
 //!
 //! Gate 0 is latched: its count ends at the first make. Gate 1 is raw: it counts while the contact is open, bounces
 //! included. Gate 1 alone would report the time plus the bounce, so the row "raw gate" adds both values of the same

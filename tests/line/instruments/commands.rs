@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::Child;
 
-/// Served instruments; dropping ends them.
+/// Served instruments; dropping this value ends them.
 struct Bench {
     shop: Workshop,
     sim: Child,
@@ -100,7 +100,7 @@ fn every_profile_passes_its_check_with_its_programs() {
         let said = bench.run("check", name, &words);
         let rows = objects(&said.stdout);
         let failed: Vec<&Value> = rows.iter().filter(|it| it["ok"] != true).collect();
-        // A busy computer makes a latency long, and nothing else.
+        // A busy computer may fail the check of the latency, and no other check.
         let slow = failed.iter().all(|it| it["check"] == "latency");
         assert!(slow && said.status <= 1, "{name}: {said:?}");
         let programs = programs.matches("--run").count();
@@ -234,7 +234,7 @@ fn monitor_of_a_missing_instrument_backs_off() {
     let shop = Workshop::new("instrument_monitor_missing");
     let words = "instrument monitor --link tcp:127.0.0.1:1 --query *STB? --every 1 --seconds 2";
     let said = shop.run(words).with_status(0);
-    // Without growing pauses, hundreds of rows would come.
+    // If the pauses did not grow, the command would print hundreds of rows.
     assert!((1..=3).contains(&said.stdout.lines().count()), "{said}");
     assert!(
         said.stdout.contains("The link is down after 3 attempts"),

@@ -2,8 +2,8 @@
 //!
 //! First all faults together, each at 1 %, in storms of ten minutes of rig time with a calm after each; then each fault
 //! alone at 3 %, with a fifth of the queries over all of them. Counts the values that reach another query, the programs
-//! that hang, the failures without a name and the links that do not recover; ends with status 1 when there is one.
-//! `--json` prints the sums as figures, a line of JSON each.
+//! that hang, the failures without a name and the links that do not recover; ends with status 1 when any count is above
+//! 0. `--json` prints the sums as figures, a line of JSON each.
 
 mod storm;
 
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::process::ExitCode;
 use storm::{WAYS, Way, Weather, each_fault, every_fault, storm};
 
-/// Queries over all ways.
+/// Number of queries over all ways.
 const QUERIES: u64 = 100_000;
 /// Probabilities of each fault: with all others, and alone.
 const TOGETHER: f64 = 0.01;

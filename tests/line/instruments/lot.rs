@@ -1,4 +1,5 @@
-//! Lots on a rig with instruments: opened before anything moves, refused when another one answers.
+//! Lots on a rig with instruments: the program opens each instrument before anything moves, and refuses the lot when
+//! another instrument answers.
 
 use crate::program::Workshop;
 

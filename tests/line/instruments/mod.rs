@@ -22,8 +22,8 @@ async fn no_reply_reaches_another_query_under_all_faults() {
     }
 }
 
-/// Each fault, the way on which it strikes, and the names of the first failures that it causes; none when a link must bear
-/// it. Half a command, a busy port and another identity need a connection that ends before them.
+/// Each fault, the way on which it strikes, and the names of the first failures that it causes; none when a link must
+/// survive the fault. Half a command, a busy port and another identity strike only after a connection has ended.
 const EACH: [(&str, Way, &[&str]); 24] = [
     ("reply_lost=1", Way::Network, &["timeout"]),
     ("reply_late=1/1000", Way::Network, &["timeout"]),

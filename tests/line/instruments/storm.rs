@@ -1,15 +1,16 @@
-//! A storm on a link to a simulated instrument: random programs under random faults, and a judge that knows the value of
-//! each query.
+//! A storm on a link to a simulated instrument: random programs under random faults, and a judge that knows the value
+//! of each query.
 //!
-//! The link runs over an in-process stream in virtual time, with a profile that comes with the program. Each query has a
-//! value of its own: the current at a level that no neighbouring query has, or a block of a length of its own. The rules:
+//! The link runs over an in-process stream in virtual time, with a profile that comes with the program. Each query has
+//! a value of its own: the current at a level that no neighbouring query has, or a block of a length of its own. The
+//! rules:
 //!
 //! - a value must be that of its query (else it is *foreign*);
 //! - a program must end by its deadline (else it *hangs*);
 //! - a failure must have a name and a text in every language (else it is *nameless*);
-//! - after the last fault at most two programs fail (else the link has not *recovered*): the first meets what the faults
-//!   left behind, such as a late reply or the local mode; the second may find, as it resynchronises, that the instrument
-//!   was switched off.
+//! - after the last fault at most two programs fail (else the link has not *recovered*): the first meets what the
+//!   faults left behind, such as a late reply or the local mode; the second may find, as it resynchronises, that the
+//!   instrument was switched off.
 
 use bus::instrument::{Link, Opener};
 use bus::{Pace, from_streams};
@@ -22,7 +23,7 @@ use std::time::Instant;
 use texts::Lang;
 use units::RigTime;
 
-/// What is between the link and the instrument, and what the instrument is.
+/// Path from the link to the instrument, and kind of instrument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
     Network,
@@ -42,11 +43,11 @@ pub const WAYS: [Way; 5] = [
     Way::Blocks,
 ];
 
-/// Most examples of broken rules.
+/// Largest number of examples of broken rules.
 const EXAMPLES: usize = 5;
-/// Programs after the last fault.
+/// Number of programs after the last fault.
 const CALM: u64 = 20;
-/// Of these the ones that may fail.
+/// Number of programs after the last fault that may fail.
 const RECOVERY: u64 = 2;
 
 /// Result of a storm.
@@ -145,8 +146,8 @@ pub fn each_fault(probability: f64, until_s: f64) -> Vec<(Way, Vec<String>)> {
     alone.map(with_way).collect()
 }
 
-/// Sends programs under `faults`, which end at `until_s` of rig time, and some after them. Needs a current-thread runtime
-/// with a paused clock.
+/// Sends programs under `faults`, which end at `until_s` of rig time, and [`CALM`] programs after that. Needs a
+/// current-thread runtime with a paused clock.
 pub async fn storm(way: Way, seed: u64, faults: &[String], until_s: f64) -> Weather {
     let (wall, pace) = (Instant::now(), Pace::virtual_time());
     let (profile, settings) = settings(way);
@@ -168,7 +169,7 @@ pub async fn storm(way: Way, seed: u64, faults: &[String], until_s: f64) -> Weat
             steps: steps.collect(),
         };
         let settings = link.session().settings();
-        // The deadline is looked at between the moves, of which each ends within the time of a query.
+        // The link checks the deadline between its steps; each step ends within the time of a query.
         let limit = settings.longest(&program) + settings.limit + settings.limit;
         let began = pace.now();
         calm += u64::from(began.since(RigTime(0)).as_seconds() >= until_s);

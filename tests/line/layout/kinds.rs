@@ -83,7 +83,7 @@ fn sources() -> Vec<Source> {
     all
 }
 
-/// Returns names of kinds outside whose folder the file lies.
+/// Returns the identifiers of a kind that a file outside the folder of that kind uses.
 fn foreign(source: &Source) -> Vec<String> {
     let end = source
         .text
@@ -92,7 +92,7 @@ fn foreign(source: &Source) -> Vec<String> {
     let last = source.text[..end].lines().count();
     let mut found = Vec::new();
     for (folder, names) in KINDS {
-        // A kind may use points and bins of another one's board.
+        // A kind may use points and bins of the board of another kind.
         if KINDS
             .iter()
             .any(|(of_a_kind, _)| source.path.starts_with(of_a_kind))

@@ -1,4 +1,5 @@
-//! A storm of line faults on the line task of the controller. `cargo bench -p bus --bench line_storm` runs the full one.
+//! A storm of line faults on the line task of the controller. `cargo bench -p bus --bench line_storm` runs the full
+//! storm.
 
 mod rage;
 

@@ -1,5 +1,5 @@
-//! A storm on one line: random transactions under random faults, and a judge that reads from the fingerprint of each value
-//! its module, channel and time.
+//! A storm on one line: random transactions under random faults, and a judge that reads from the fingerprint of each
+//! value its module, channel and time.
 //!
 //! The line task runs over an in-process stream in virtual time. The rules:
 //!
@@ -39,8 +39,8 @@ pub const EVERY_FAULT: [&str; 13] = [
     "port_lost=0.01/20",
 ];
 
-/// Silence of a line after a time-out, ms. No host can distinguish a reply later than time-out and silence from the next
-/// one. The two late faults together make 220 ms.
+/// Silence of a line after a time-out, ms. No host can distinguish a reply later than time-out and silence from the
+/// next one. The two late faults together make 220 ms.
 const GRACE_MS: u64 = 200;
 
 /// Longest time until an answer, of rig time: two tries, each with time-out, noisy silence and a lost port. One

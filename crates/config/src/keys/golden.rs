@@ -1,4 +1,4 @@
-//! Keys of `golden.toml`, and of the certificate of a rack.
+//! Keys of `golden.toml`, and of `rack.toml`, the certificate of a rack of sockets.
 
 use machine::dut::em_relay::keys::reference_part::PART;
 use machine::form::{Form, Key, from_to, key};
@@ -9,5 +9,5 @@ pub const FILE: &[Key] = keys! {
     key("golden", Form::List(&Form::Table(PART)), "gauge", "the reference parts");
 };
 
-/// All keys of the certificate of a rack, `rack.toml`.
+/// All keys of `rack.toml`.
 pub use machine::dut::thermostat::keys::CERTIFICATE;

@@ -1,5 +1,5 @@
-//! Tests of rigs that lack points of a fixture: they load, and a recipe that needs such a point is refused with its
-//! name.
+//! Tests of rigs that lack points of a fixture: such a rig loads, and the refusal of a recipe names the point that is
+//! missing.
 
 use super::RIG;
 use super::rack::RACK_RIG;
@@ -30,7 +30,7 @@ fn without(lacks: impl Fn(&str, &Table) -> bool) -> Table {
     rig
 }
 
-/// Returns the default rig without its coil board: without the measuring line and everything on it.
+/// Returns the default rig without its coil board, that is, without the measuring line and everything on that line.
 fn without_the_coil_board() -> Table {
     let rig: Table = toml::from_str(RIG).unwrap();
     let measures = |module: &Value| module["line"].as_str() == Some("measure");

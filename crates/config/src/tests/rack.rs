@@ -1,5 +1,5 @@
-//! Tests of a rig with a rack: it loads without feeder and scene, and wrong sockets and lists are refused with their
-//! places.
+//! Tests of a rig with a rack: the rig loads without feeder and scene, and the refusal of a wrong socket or list names
+//! its place.
 
 use super::changed;
 use crate::{Folder, Plant, check_all, load_recipe};

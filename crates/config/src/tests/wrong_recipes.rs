@@ -1,4 +1,4 @@
-//! Tests of recipes that no rig, or not this rig, can carry out: each is refused with key, found and expected.
+//! Tests of recipes that no rig, or not this rig, can carry out: each refusal names key, found and expected value.
 //!
 //! `wrong_recipes.txt` has one block per recipe: first the changes to a recipe of `config/`, with `-` for a key that is
 //! left out; then all faults, indented, in the order of the message.

@@ -54,7 +54,7 @@ impl Draw {
         self.below(times) == 0
     }
 
-    /// Draws a part of the file; `None` when the file has none.
+    /// Draws a part of the file; `None` when the file has no parts.
     pub fn part(&mut self) -> Option<Part> {
         let at = self.below(self.parts.len());
         self.parts.get(at).cloned()
@@ -131,7 +131,7 @@ impl Draw {
         filter
     }
 
-    /// Adds a range of values, with ends at values of parts: an end belongs to the range.
+    /// Adds a range of values. Its ends are values of parts, to check that an end belongs to the range.
     fn range(&mut self, filter: &mut Filter, like: &Part) {
         let param = self.parameter();
         let value = |part: &Part| part.values.get(&param).and_then(serde_json::Value::as_f64);

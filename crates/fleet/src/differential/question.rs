@@ -11,7 +11,7 @@ use quality::rules::Rules;
 use serde::Serialize;
 use texts::Lang;
 
-/// A question; its members are what the command line takes.
+/// A question; its members are the arguments of a command.
 #[derive(Debug, Clone)]
 pub(super) enum Question {
     Parts(Filter),
@@ -90,7 +90,7 @@ impl Question {
         }
     }
 
-    /// Asks; returns the answer or the refusal as text.
+    /// Asks `archive`; returns the answer or the refusal as text.
     pub fn answer(&self, archive: &Archive, recipes: &[Recipe]) -> Answer {
         match self {
             Self::Parts(filter) => parts(archive.query(filter)),

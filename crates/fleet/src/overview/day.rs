@@ -23,7 +23,7 @@ pub(super) async fn ask(link: &Link, watched: &Watched, at: Moment) -> Result<Da
             why: error.to_string(),
         }
     })?;
-    // A shift that had begun before has no whole count.
+    // A shift that began before `since` would have an incomplete count.
     let shifts: Vec<ShiftYield> = shifts.into_iter().filter(|it| it.from > since).collect();
     let a_day_ago = at.0 - 24 * HOUR_US;
     let mut edges: Vec<i64> = shifts.iter().flat_map(|it| [it.from.0, it.to.0]).collect();
@@ -57,7 +57,7 @@ pub(super) async fn ask(link: &Link, watched: &Watched, at: Moment) -> Result<Da
     })
 }
 
-/// Adds the counts of the spans between two edges; span `n` begins at `edges[n - 1]`.
+/// Returns the sum of the counts between the edges `from` and `to`; span `n` begins at `edges[n - 1]`.
 fn sum(spans: &BTreeMap<usize, LotYield>, edges: &[i64], (from, to): (i64, i64)) -> LotYield {
     let number = |at: i64| edges.partition_point(|edge| *edge <= at);
     let mut all = LotYield::default();

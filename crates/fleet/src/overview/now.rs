@@ -11,10 +11,10 @@ use std::collections::{BTreeMap, HashMap};
 use texts::{Args, Lang};
 use tokio_postgres::Row;
 
-/// The history of each rig that may send.
+/// The history that may send for each rig: the one with the highest epoch.
 const CURRENT: &str = "SELECT DISTINCT ON (rig_id) id, rig_id, host FROM relayrig.history ORDER BY rig_id, epoch DESC";
 
-/// Asks what each rig does, as of an instant or of the clock of the database.
+/// Asks what each rig does at the instant `as_of`, or now by the clock of the database.
 pub(super) async fn ask(link: &Link, as_of: Option<Moment>) -> Result<Now> {
     let clock = "SELECT (extract(epoch FROM clock_timestamp()) * 1000000)::bigint";
     let at_us = match as_of {
@@ -29,7 +29,7 @@ pub(super) async fn ask(link: &Link, as_of: Option<Moment>) -> Result<Now> {
         let mut rig = rig(row, at_us);
         let opened = rig.run.as_ref().map_or(i64::MIN, |it| it.opened.0);
         rig.alarms = alarms.remove(&history).unwrap_or_default();
-        // An alarm that ended a run stays without an end: those of earlier runs are over.
+        // An alarm that ended its run is never cleared, but alarms of earlier runs are over.
         rig.alarms.retain(|it| it.raised.0 >= opened);
         rig.calibrations = calibrations.remove(&history).unwrap_or_default();
         let is_open = rig.run.as_ref().is_some_and(|it| it.closed.is_none());
@@ -42,7 +42,7 @@ pub(super) async fn ask(link: &Link, as_of: Option<Moment>) -> Result<Now> {
     })
 }
 
-/// Returns the statement for everything of a rig that is one row.
+/// Returns the statement with one row per rig: last batch, latest run, newest part, parts of the last hour.
 fn states(at_us: i64) -> String {
     let (since, hour, until) = (at_us - BACK_US, at_us - HOUR_US, at_us + HOUR_US);
     let us = |it: &str| format!("(extract(epoch FROM {it}) * 1000000)::bigint");

@@ -1,5 +1,5 @@
-//! How the readings of reference parts changed, rig by rig. The reference checks of a rig say when its reference parts were
-//! measured, so that only the parts just before a check are read.
+//! How the readings of reference parts changed, rig by rig. The reference checks of a rig say when it measured its
+//! reference parts, so the question reads only the parts just before a check.
 
 use super::DOING;
 use crate::error::Result;
@@ -14,7 +14,7 @@ const CHECK_US: i64 = 15 * 60 * 1_000_000;
 /// Age of the oldest check that counts, µs: 30 days.
 const OLDEST_US: i64 = 30 * 86_400 * 1_000_000;
 
-/// Last reference checks of a rig that are looked at.
+/// Number of the latest reference checks that the question reads per rig.
 const CHECKS: u32 = 100;
 
 /// A reading: value, uncertainty, instant.
@@ -52,7 +52,7 @@ pub(super) async fn ask(link: &Link, until: Moment) -> Result<Vec<ReferenceDrift
     Ok(drifts)
 }
 
-/// Compares the first and the last reading; `None` when there is only one.
+/// Compares the first and the last reading; `None` with a single reading.
 fn drift(
     ((serial, parameter, rig), (checks, readings)): ((String, String, String), (u64, Vec<Reading>)),
 ) -> Option<ReferenceDrift> {

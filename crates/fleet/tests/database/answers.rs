@@ -1,4 +1,4 @@
-//! A database answers as the history file does, for one rig and for many.
+//! Tests: a database answers as the history file does, for one rig and for many.
 
 use crate::rig::Rig;
 use crate::server::Server;
@@ -19,7 +19,7 @@ pub fn database(server: &Server, rig: Option<&str>) -> Archive {
     Archive::of_server(Box::new(Reader::open(&target, &rigs).unwrap()))
 }
 
-/// Runs `work` on a runtime of its own; a reader has its own too.
+/// Runs `work` on a runtime of its own, which does not disturb the runtime of a reader.
 pub fn wait<T>(work: impl Future<Output = T>) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()

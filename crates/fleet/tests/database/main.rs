@@ -1,6 +1,6 @@
 //! Tests against a PostgreSQL server of their own: each starts one in a folder of its own and stops it at the end.
 //!
-//! They need the Debian package `postgresql` (15 or later) and fail without it.
+//! The tests need the Debian package `postgresql` (15 or later) and fail without it.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! Tests: everything of a history arrives, once, as it is.
+//! Tests: every row of a history arrives once and unchanged.
 
 use crate::rig::Rig;
 use crate::server::Server;

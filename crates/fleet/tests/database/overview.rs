@@ -1,4 +1,4 @@
-//! The overview of all rigs counts as the questions of a history do, and reads little.
+//! Tests: the overview of all rigs gives the counts that a history gives, and reads few rows.
 
 use crate::answers::{database, wait};
 use crate::rig::{BEGIN_US, Rig};

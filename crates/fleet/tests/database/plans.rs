@@ -1,4 +1,4 @@
-//! Questions find their rows in the large tables by an index, as the server itself counts it.
+//! Tests: questions find their rows in the large tables by an index, according to the counters of the server.
 
 use crate::answers;
 use crate::server::Server;

@@ -1,4 +1,4 @@
-//! A link that breaks: it forwards bytes between rig and server and cuts a connection after a drawn number of them.
+//! A link that breaks: it forwards bytes between rig and server and cuts a connection after a drawn number of bytes.
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};

@@ -1,4 +1,4 @@
-//! Tests: what must not be mixed is refused, with the way out; and the way out works.
+//! Tests: the database refuses rows that must not mix, the refusal names a remedy, and the remedy works.
 
 use crate::rig::Rig;
 use crate::server::Server;

@@ -1,4 +1,4 @@
-//! A rig: its history, and what it writes there.
+//! A rig for tests, which writes its history without a machine.
 
 use config::{FleetSettings, FleetTarget};
 use fleet::{Pushed, Result, push};
@@ -18,9 +18,9 @@ pub const BEGIN_US: i64 = 1_769_903_940_000_000;
 
 /// A rig with a history of its own.
 pub struct Rig {
-    /// Name.
+    /// Name of the rig.
     pub name: String,
-    /// History.
+    /// Path of the history file.
     pub db: PathBuf,
     pub folder: tempfile::TempDir,
 }
@@ -36,8 +36,8 @@ impl Rig {
         }
     }
 
-    /// Tests `count` parts of a lot in a run of its own, each with `values` measurements; every tenth fails. Leaves the
-    /// last part in the machine.
+    /// Records `count` parts of a lot in a run of its own, each with `values` measurements; every tenth fails. Leaves
+    /// the last part in the machine.
     pub fn run(&self, lot: &str, count: u64, values: usize) {
         let mut store = Store::open(&self.db).unwrap();
         store.begin_lot(&lot_record(lot)).unwrap();
@@ -61,7 +61,8 @@ impl Rig {
         store.close_lot(lot, BEGIN_US + 1_000_000_000).unwrap();
     }
 
-    /// Tests four parts of a lot, does `between`, and then notes that the last test was interrupted and another part landed.
+    /// Records four parts of a lot, calls `between`, and then notes that the last test was interrupted and another part
+    /// landed.
     pub fn cut_off(&self, lot: &str, between: impl FnOnce()) {
         let mut store = Store::open(&self.db).unwrap();
         store.begin_lot(&lot_record(lot)).unwrap();
@@ -80,7 +81,7 @@ impl Rig {
         store.close_lot(lot, at(9)).unwrap();
     }
 
-    /// Records what happens around the run of a lot after it: a good and a failed reference check, orders, a hold.
+    /// Records a retest of a lot with a good and a failed reference check, orders and a hold.
     pub fn gates(&self, lot: &str) {
         let mut store = Store::open(&self.db).unwrap();
         let record = LotRecord {
@@ -129,7 +130,7 @@ impl Rig {
         store.close_lot(lot, at(44)).unwrap();
     }
 
-    /// Measures the reference part G-1 in a run of a lot, with a result of the check a second later.
+    /// Records a run of a lot in which the reference part G-1 is measured, and the good check a second later.
     pub fn reference(&self, lot: &str, seq: u64, volts: f64) {
         let mut store = Store::open(&self.db).unwrap();
         store.begin_lot(&lot_record(lot)).unwrap();

@@ -12,7 +12,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Makes a server with an empty database `relayrig`. Everybody on this computer may be every user.
+    /// Makes a server with an empty database `relayrig`. Anyone on this computer may log in as any user.
     pub fn start() -> Self {
         let trial = Trial::start().unwrap();
         let port = trial.port;

@@ -1,5 +1,5 @@
-//! Tests: links cut at drawn bytes, senders dropped at drawn instants and a server that is killed lose nothing and double
-//! nothing. `FLEET_STORM` gives the size: rigs, parts of each, cuts, kills of senders, kills of the server.
+//! Tests: no row is lost or doubled when links are cut at drawn bytes, senders dropped at drawn instants and the server
+//! killed. `FLEET_STORM` gives the size: rigs, parts of each, cuts, kills of senders, kills of the server.
 
 use crate::proxy::Proxy;
 use crate::rig::Rig;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Size in CI.
+/// Size of the storm in CI: rigs, parts per rig, then least numbers of cuts, dropped senders and killed servers.
 const SMALL: [u64; 5] = [3, 200, 12, 10, 2];
 /// Most bytes that a connection carries before it is cut; a batch of 200 parts has more.
 const CUT_WITHIN: u64 = 40_000;
@@ -55,7 +55,7 @@ async fn nothing_is_lost_or_doubled_when_everything_dies() {
             let mut random = Xoshiro256PlusPlus::seed_from_u64(rounds * 1000 + n);
             let patience = Duration::from_millis(random.next_u64() % 1000);
             sending.push(tokio::task::spawn(async move {
-                // The end of the time drops the sender wherever it is, as a kill would.
+                // The time-out drops the sender at any point of its work, as a kill would.
                 if tokio::time::timeout(patience, rig.push(&target))
                     .await
                     .is_err()

@@ -1,4 +1,5 @@
-//! Troubles of network, server and clock: one message each, with the database and what to do; the rows stay in the queue.
+//! Troubles of network, server and clock: each gives one message with database and remedy, and the rows stay in the
+//! queue.
 
 use crate::rig::Rig;
 use crate::server::Server;
@@ -18,7 +19,7 @@ fn target(port: u16) -> FleetTarget {
     }
 }
 
-/// Returns what a rig with one part says when it sends to `target`; the part must stay in the queue.
+/// Returns the error of a rig with one part that sends to `target`; the part must stay in the queue.
 async fn said(target: &FleetTarget) -> String {
     let rig = Rig::new("rig-1");
     rig.run("A", 1, 1);

@@ -86,8 +86,8 @@ impl Filter {
         }
     }
 
-    /// Counts the judged parts by time span, run and verdict. Span `n` ends before `edges[n]`, microseconds, ascending; the
-    /// last span has no end.
+    /// Counts the judged parts by time span, run and verdict. Span `n` ends before `edges[n]`, microseconds, ascending;
+    /// the last span has no end.
     pub(in super::super) fn by_span(&self, edges: &[i64]) -> Select {
         assert!(edges.is_sorted(), "spans out of order");
         let mut counted = Select::new(format!(
@@ -101,8 +101,8 @@ impl Filter {
     }
 }
 
-/// Returns an SQL expression for the number of the span in which a part was judged; `first` is the number of the span
-/// before the first edge. The expression searches by halves.
+/// Returns an SQL expression for the number of the span in which a part was judged: a binary search over `edges`.
+/// `first` is the number of the span before the first edge.
 fn span(edges: &[i64], first: usize) -> String {
     let half = edges.len() / 2;
     let Some(edge) = edges.get(half) else {

@@ -50,7 +50,7 @@ pub fn parameters(archive: &Archive, asked: Option<&str>) -> Result<Vec<String>>
     Ok(known)
 }
 
-/// Fails when the runs are of several rigs, for a question about one lot; a file has runs of one rig.
+/// Fails when the runs come from several rigs, because a lot belongs to one rig; only a server has several.
 pub fn one_rig(runs: &[LotSummary]) -> Result<()> {
     let first = runs.first().and_then(|it| it.rig.as_ref());
     let other = runs

@@ -20,7 +20,7 @@ pub const LOTS: std::ops::RangeInclusive<usize> = 2..=8;
 pub struct ComparedLot {
     /// Name of the lot.
     pub lot: String,
-    /// Limits that its runs share; none when they differ.
+    /// Limits that all runs of the lot share; absent when limits differ.
     #[serde(flatten)]
     pub limits: Limits,
     /// Mean, spread and capability.

@@ -15,7 +15,7 @@ const CLASSES: usize = 30;
 pub struct Figures {
     /// Mean, spread and capability.
     pub summary: Summary,
-    /// True when the runs have different limits; there is no capability then.
+    /// True when the runs have different limits; then capability is absent.
     pub limits_differ: bool,
 }
 
@@ -77,7 +77,7 @@ pub struct Classes {
     #[serde(flatten)]
     #[schema(value_type = SomeHistogram)]
     pub histogram: Option<Histogram>,
-    /// Limits that all runs share; none when they differ.
+    /// Limits that all runs share; absent when limits differ.
     #[serde(flatten)]
     pub limits: Limits,
 }

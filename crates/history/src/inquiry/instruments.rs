@@ -26,7 +26,7 @@ pub struct Instruments {
 /// A calibration, and until when it is valid.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct CalibrationStatus {
-    /// Nominal coil voltage of its reference parts, V; `None` for a calibration of the rack.
+    /// Nominal coil voltage of the reference parts, V; `None` for a rack of sockets, whose parts have no coil.
     pub nominal_v: Option<f64>,
     /// Time of the calibration.
     pub made: Moment,
@@ -59,11 +59,11 @@ pub struct ShownFactor {
 /// A reference part, with its certificate and latest readings.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ReferencePartStatus {
-    /// Serial number.
+    /// Serial number of the reference part.
     pub serial: String,
     /// Nominal coil voltage of the recipes that use the part, V.
     pub nominal_v: f64,
-    /// Time of its last test, if any.
+    /// Time of the last test of the reference part, if any.
     pub seen: Option<Moment>,
     /// Lot and run of the last test of the reference part.
     pub run: Option<(String, u32)>,
@@ -81,7 +81,7 @@ pub struct CertifiedReading {
     pub certified: f64,
     /// Expanded uncertainty of the certificate, k = 2.
     pub certified_uncertainty: f64,
-    /// Latest reading, if any.
+    /// Latest reading; `None` without one.
     pub value: Option<f64>,
     /// Expanded uncertainty of the reading, k = 2.
     pub uncertainty: Option<f64>,

@@ -36,8 +36,8 @@ pub fn paper(language: Lang) -> Paper {
     }
 }
 
-/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep, seconds; when absent, the
-/// 5 % quantile of the cycle times.
+/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep, seconds; `None` takes
+/// the 5 % quantile of the cycle times.
 pub fn lot_report(
     archive: &Archive,
     filter: &Filter,

@@ -124,7 +124,8 @@ pub fn names(reason: &Reason) -> [String; 2] {
     [Lang::En, Lang::Zh].map(|lang| reason.short(lang))
 }
 
-/// Ranks counts by name, English and Chinese, with the time for which an alarm was active, s.
+/// Ranks entries by their counts. A key is the English and the Chinese name; a value is the count, and for an alarm
+/// the time for which it was active, s.
 pub fn ranked(counts: BTreeMap<[String; 2], (u64, Option<f64>)>) -> Vec<Ranked> {
     let all: u64 = counts.values().map(|(n, _)| n).sum();
     let mut counts: Vec<_> = counts.into_iter().collect();

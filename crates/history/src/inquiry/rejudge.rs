@@ -72,8 +72,8 @@ pub struct Change {
 pub struct Rejudging {
     recipe: Recipe,
     filter: Filter,
-    /// By number of the run, the data of the recipe by which its parts were measured; `recipe` stands in for an import
-    /// without a recipe.
+    /// Data of the recipe by which the parts of a run were measured, by number of the run; for an import without a
+    /// recipe, data of `recipe`.
     bases: BTreeMap<u32, Basis>,
 }
 

@@ -1,5 +1,5 @@
-//! State of many rigs, as the page of all rigs shows it. A database with their histories gives it in two answers: what each
-//! rig does now, and what it made in the last shifts.
+//! State of many rigs, as the page of all rigs shows it. The database that collects the histories gives two answers:
+//! what each rig does now, and what each rig made in the last shifts.
 
 use super::pareto::Ranked;
 use super::shifts::ShiftYield;
@@ -8,17 +8,17 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use utoipa::ToSchema;
 
-/// Longest silence of a rig with an open run that is no trouble, seconds.
+/// Longest silence of a rig with an open run before its condition is [`Condition::Silent`], seconds.
 pub const SILENT_S: f64 = 300.0;
-/// Longest time from the judgement of a part to its arrival that is no trouble, seconds.
+/// Longest time from the judgement of a part to its sending before the condition is [`Condition::Late`], seconds.
 pub const LATE_S: f64 = 300.0;
 
-/// What is known of all rigs. The answers stay when the database is lost; `trouble` then says why they are old.
+/// Latest answers about all rigs. Old answers remain while the database does not answer; `trouble` then says why.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, ToSchema)]
 pub struct Overview {
-    /// Database, without password.
+    /// Address of the database, without password.
     pub target: String,
-    /// Why the last question failed; `None` after one that succeeded.
+    /// Why the last question failed; `None` when it succeeded.
     pub trouble: Option<Trouble>,
     /// What each rig does.
     pub now: Option<Now>,
@@ -29,7 +29,7 @@ pub struct Overview {
 /// A database that does not answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Trouble {
-    /// Database, what happened and the remedy, English.
+    /// English text that names the database, what happened and the remedy.
     pub text: String,
     /// Code of the remedy, in family `rigs_remedy` of the texts.
     pub remedy: &'static str,
@@ -53,13 +53,13 @@ pub struct RigNow {
     pub site: String,
     /// Name of the rig.
     pub rig: String,
-    /// The condition, the worst first.
+    /// The worst condition that applies.
     pub condition: Condition,
-    /// Computer that sends.
+    /// Name of the computer that sends the rows of the rig.
     pub host: String,
-    /// Arrival of the last rows; a rig sends when it has something new.
+    /// Arrival of the last rows; a rig sends only new rows.
     pub contact: Option<Moment>,
-    /// Seconds from then to `at`.
+    /// Seconds from `contact` to [`Now::at`].
     pub silent_s: Option<f64>,
     /// Seconds from the judgement of the newest part to its sending, both by the clock of the rig.
     pub lag_s: Option<f64>,
@@ -67,9 +67,9 @@ pub struct RigNow {
     pub clock_ahead_s: Option<f64>,
     /// The latest run.
     pub run: Option<LatestRun>,
-    /// Judgement of the newest part of the last 36 hours.
+    /// Time of judgement of the newest part; `None` without a part in the last 36 hours.
     pub last_part: Option<Moment>,
-    /// Parts of lots judged in the last hour.
+    /// Number of production parts judged in the last hour.
     pub parts_per_hour: u64,
     /// Active alarms of the latest run, the newest first.
     pub alarms: Vec<ActiveAlarm>,
@@ -88,9 +88,9 @@ pub struct LatestRun {
     pub recipe: String,
     /// `rig`, `simulated` or `import`.
     pub source: String,
-    /// Begin.
+    /// Start of the run.
     pub opened: Moment,
-    /// End; `None` while it is open.
+    /// End of the run; `None` while the run is open.
     pub closed: Option<Moment>,
 }
 
@@ -100,11 +100,11 @@ pub struct LatestRun {
 pub enum Condition {
     /// An alarm is active in the open run.
     Alarm,
-    /// The run is open, and nothing came for over [`SILENT_S`].
+    /// A run is open, and no rows have arrived for over [`SILENT_S`].
     Silent,
-    /// Parts arrive later than [`LATE_S`] after their judgement.
+    /// The rig sends parts later than [`LATE_S`] after their judgement.
     Late,
-    /// The run is open.
+    /// A run is open.
     Testing,
     /// No run is open.
     Idle,
@@ -128,28 +128,28 @@ impl Condition {
 /// An alarm that is active.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ActiveAlarm {
-    /// Code.
+    /// Code of the alarm.
     pub code: String,
     /// Message in English.
     pub text: String,
     /// Message in Chinese; `None` when this program does not know the code.
     pub text_zh: Option<String>,
-    /// Time at which it was raised.
+    /// Time at which the alarm was raised.
     pub raised: Moment,
-    /// True after a person has acknowledged it.
+    /// True after a person has acknowledged the alarm.
     pub acknowledged: bool,
 }
 
 /// When a calibration expires.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct CalibrationDue {
-    /// Nominal coil voltage of its reference parts, V; `None` for a calibration of the rack.
+    /// Nominal coil voltage of the reference parts, V; `None` for a rack of sockets, whose parts have no coil.
     pub nominal_v: Option<f64>,
     /// Time of the calibration.
     pub made: Moment,
-    /// Time at which it expires.
+    /// Time at which the calibration expires.
     pub due: Moment,
-    /// True once it has expired.
+    /// True once the calibration has expired.
     pub overdue: bool,
     /// False after a failed verification, else true.
     pub verified: bool,
@@ -166,7 +166,7 @@ pub struct Day {
     pub references: Vec<ReferenceDrift>,
 }
 
-/// What a rig made.
+/// Output of a rig.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct RigDay {
     /// Name of the plant.
@@ -181,7 +181,7 @@ pub struct RigDay {
     pub shifts: Vec<ShiftYield>,
 }
 
-/// Most reasons of a rig.
+/// Largest number of reasons in a [`RigDay`].
 pub const REASONS: usize = 5;
 
 /// How the readings of a reference part on a rig changed.
@@ -207,12 +207,13 @@ pub struct ReferenceDrift {
     pub uncertainty: Option<f64>,
     /// Last reading minus the median of the last readings of all rigs that measured the same part; `None` for one rig.
     pub from_others: Option<f64>,
-    /// True when this and another rig changed in the same direction by more than half their uncertainty.
+    /// True when readings of this characteristic on this and on another rig changed in the same direction, each by more
+    /// than half its uncertainty.
     pub shared: bool,
 }
 
 impl ReferenceDrift {
-    /// Returns the direction of a change beyond half the uncertainty: 1 up, -1 down, 0 none.
+    /// Returns the direction of a change by more than half the uncertainty: 1 up, -1 down; 0 for a smaller change.
     fn direction(&self) -> i8 {
         let change = self.last - self.first;
         match self.uncertainty {

@@ -17,13 +17,13 @@ const LONGEST: i32 = 400;
 /// A shift, the same on each day, in local time of the plant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Shift {
-    /// Name.
+    /// Name of the shift.
     pub name: String,
     /// Begin and end, minutes after the midnight before the begin; the shift is at most a day long.
     pub minutes: (u16, u16),
 }
 
-/// Parts of a shift.
+/// Counts of the parts judged in one shift.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ShiftYield {
     /// Day on which the shift begins, `2026-11-22`.
@@ -42,11 +42,12 @@ pub struct ShiftYield {
     pub counts: LotYield,
 }
 
-/// Counts the parts that the filter selects in every shift that overlaps the time span from `since` to `until` of the filter,
-/// in order of time and rig. A shift without parts has no entry.
+/// Counts the parts that the filter selects, by shift and rig, in order of time and rig. Shifts are those that overlap
+/// the time from `since` to `until` of the filter; a shift without parts has no entry.
 ///
 /// # Errors
-/// Fails without shifts, without a time span, with one over [`LONGEST`] days, and when the history cannot be read.
+/// Fails without shifts, without a time span, for a time span over [`LONGEST`] days, and when the history cannot be
+/// read.
 pub fn by_shift(
     archive: &Archive,
     filter: &Filter,
@@ -129,7 +130,7 @@ fn days((since, until): (Moment, Moment), zone: &TimeZone) -> Result<Vec<Date>> 
         .collect())
 }
 
-/// Returns begin and end of a shift within the time span; `None` when it lies outside.
+/// Returns begin and end of a shift, cut to the time span; `None` for a shift outside the time span.
 fn clipped(
     day: Date,
     shift: &Shift,
@@ -150,12 +151,12 @@ fn clipped(
     (from < to).then_some((from, to))
 }
 
-/// Counts by number of the span and rig.
+/// Counts by index of the time span and by rig.
 type Counts = BTreeMap<(usize, Option<String>), LotYield>;
 
 impl Archive {
-    /// Counts the selected parts by time span and rig, as [`Archive::lot_yield`] does, but no suspect parts. The rig is
-    /// `None` in the file of one rig.
+    /// Counts the selected parts by time span and rig, as [`Archive::lot_yield`] does, but no suspect parts. The rig of
+    /// a file is `None`.
     fn by_span(&self, filter: &Filter, edges: &[i64]) -> crate::Result<Counts> {
         const DOING: &str = "counting the parts of shifts";
         let read = |row: &Row<'_>| {

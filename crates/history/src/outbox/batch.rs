@@ -3,12 +3,12 @@
 /// Choice of the raw replies that go to a database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SampleChoice {
-    /// None.
+    /// No raw replies.
     #[default]
     None,
     /// Raw replies of parts that did not pass.
     Rejects,
-    /// All.
+    /// All raw replies.
     All,
 }
 
@@ -48,9 +48,9 @@ pub struct Batch {
 pub struct RecipeRow {
     /// SHA-256 of `body`, hexadecimal.
     pub hash: String,
-    /// Name.
+    /// Name of the recipe.
     pub name: String,
-    /// TOML.
+    /// Text of the recipe, TOML.
     pub body: String,
     /// Time of the first use.
     pub first_used_us: i64,
@@ -61,7 +61,7 @@ pub struct RecipeRow {
 pub struct RunRow {
     /// Row number.
     pub id: i64,
-    /// UUID.
+    /// UUID of the run.
     pub uuid: String,
     /// Name of the lot.
     pub lot: String,
@@ -69,26 +69,26 @@ pub struct RunRow {
     pub number: i64,
     /// Hash of the recipe.
     pub recipe_hash: String,
-    /// Begin.
+    /// Start of the run.
     pub opened_at_us: i64,
     /// `rig`, `simulated` or `import`.
     pub source: String,
     /// Seed of the simulated rig.
     pub seed: Option<String>,
-    /// Program and version.
+    /// Name and version of the program that wrote the run.
     pub written_by: String,
 }
 
 /// Facts about a part that may change after its judgement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartState {
-    /// Verdict.
+    /// Verdict on the part.
     pub verdict: String,
     /// Bin of the verdict.
     pub bin: Option<String>,
-    /// Reasons, JSON.
+    /// Reasons of the verdict, JSON.
     pub reasons: String,
-    /// Time since the part before left the nest, s.
+    /// Time since the previous part left the nest, s.
     pub cycle_s: Option<f64>,
     /// Bin whose beam saw the part.
     pub landed_bin: Option<String>,
@@ -130,18 +130,18 @@ pub struct PartChange {
     pub state: PartState,
 }
 
-/// A reason.
+/// A reason of a verdict.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReasonRow {
     /// Row number of the part.
     pub part: i64,
     /// Place among the reasons, from 1.
     pub n: i64,
-    /// Code.
+    /// Code of the reason.
     pub code: String,
     /// Row number of the parameter.
     pub parameter: Option<i64>,
-    /// `low` or `high`.
+    /// Violated limit: `low` or `high`.
     pub side: Option<String>,
     /// Figure, pin or cause.
     pub detail: String,
@@ -158,7 +158,7 @@ pub struct MeasurementRow {
     pub judged_at_us: i64,
     /// Row number of the parameter.
     pub parameter: i64,
-    /// Attempt, from 1.
+    /// Number of the attempt, from 1.
     pub attempt: i64,
     /// Value, in the unit of the parameter.
     pub value: Option<f64>,
@@ -170,34 +170,34 @@ pub struct MeasurementRow {
     pub high: Option<f64>,
     /// Verdict of the attempt.
     pub verdict: String,
-    /// Budget, JSON.
+    /// Uncertainty budget, JSON.
     pub budget: Option<String>,
-    /// `lot` or `golden` on the attempt that statistics count.
+    /// Kind of the part (`lot` or `golden`) on the attempt that statistics use; `None` on any other attempt.
     pub population: Option<String>,
 }
 
-/// A raw reply.
+/// A raw reply of a module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SampleRow {
     /// Row number of the part.
     pub part: i64,
     /// Row number of the parameter.
     pub parameter: i64,
-    /// Attempt.
+    /// Number of the attempt, from 1.
     pub attempt: i64,
     /// Place within the attempt, from 1.
     pub n: i64,
-    /// Line.
+    /// Name of the serial line.
     pub line: String,
     /// Address of the module.
     pub module: String,
-    /// Channel.
+    /// Channel of the module.
     pub channel: String,
     /// Text sent.
     pub command: String,
     /// Text received.
     pub raw: String,
-    /// When the reply was complete.
+    /// Time at which the last byte of the reply arrived.
     pub at_us: i64,
 }
 
@@ -208,7 +208,7 @@ pub struct CurveRow {
     pub part: i64,
     /// Name of the point.
     pub signal: String,
-    /// Unit.
+    /// Unit of the samples.
     pub unit: String,
     /// Value of one step.
     pub step: f64,
@@ -220,16 +220,16 @@ pub struct CurveRow {
     pub packed: Vec<u8>,
 }
 
-/// A row of another table, or a change of one.
+/// A new or changed row of any other table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EventRow {
     /// Entry of the queue.
     pub event: i64,
-    /// Table.
+    /// Name of the table.
     pub kind: String,
-    /// Row number of the row in that table; of the run for what belongs to a run, of the lot for what belongs to a lot.
+    /// Row number in that table; for a fact about a run or a lot, the row number of the run or lot.
     pub row: i64,
-    /// Row number of the run, where the row names one.
+    /// Row number of the run, if the row names a run.
     pub run: Option<i64>,
     /// Columns with their values, JSON.
     pub body: String,

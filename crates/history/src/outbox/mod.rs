@@ -1,15 +1,15 @@
 //! Rows on their way to databases that collect the histories of many rigs.
 //!
-//! - Triggers of schema 15 queue each new row, and each change of a row, once per target, in the transaction that writes
-//!   it. A history without targets queues nothing.
-//! - [`Outbox::prepare`] names the next batch with a UUID and stores this name before anything is sent. A batch that may
-//!   have arrived keeps its name until the target says whether it has it, so that nothing is sent under two names. It comes
-//!   again with half of its entries: one that is too long for the link gets through at last. What arrives a second time
-//!   the target drops.
-//! - [`Outbox::confirm`] moves the watermark and removes the queued entries. Call it only after the target has committed.
-//! - Retention leaves runs of which a target lacks rows.
+//! - Triggers of schema 15 queue each new row, and each change of a row, once per target, in the transaction that
+//!   writes the row. A history without targets queues nothing.
+//! - [`Outbox::prepare`] gives the next batch a UUID and stores the UUID before the caller sends anything. A batch that
+//!   may have arrived keeps its UUID until the target says whether it has that batch, so no batch is sent under two
+//!   UUIDs. [`Outbox::prepare`] returns such a batch again, with half of the entries, so that a batch too long for the
+//!   link gets through at last. The target drops rows that arrive a second time.
+//! - [`Outbox::confirm`] moves the watermark and removes the queued entries. Call it after the target has committed.
+//! - Retention deletes no run of which a target lacks rows.
 //!
-//! An outbox has a connection of its own. It holds the lock of the file only while it notes names and watermarks, never
+//! An outbox has a connection of its own and holds the lock of the file only while it notes UUIDs and watermarks, never
 //! while it reads rows.
 
 mod batch;
@@ -33,29 +33,29 @@ pub struct Outbox {
     connection: Connection,
 }
 
-/// What the history knows about a target.
+/// What the history knows about a target, that is, a database to which it sends its rows.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Target {
-    /// Row number.
+    /// Row number in the table `target`.
     id: i64,
     /// UUID by which the target knows this file.
     pub identity: String,
     /// Number of batches that the target has confirmed.
     pub sent: i64,
-    /// UUID of the last of them.
+    /// UUID of the last confirmed batch.
     pub confirmed: Option<String>,
-    /// Last entry of the queue in the last of them.
+    /// Last entry of the queue in the last confirmed batch.
     pub watermark: i64,
     /// UUID of a batch that was sent and may have arrived.
     pub pending: Option<String>,
 }
 
-/// What a target does not have yet.
+/// Counts of the entries that a target still lacks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Lag {
-    /// Entries of the queue.
+    /// Number of entries in the queue.
     pub entries: u64,
-    /// Parts among them.
+    /// Number of parts among the entries.
     pub parts: u64,
     /// Judgement of the oldest of these parts, microseconds since 1970 UTC.
     pub oldest_us: Option<i64>,
@@ -105,7 +105,7 @@ impl Outbox {
         self.read(url)
     }
 
-    /// Returns the target with this URL; `None` when the file has never queued for it.
+    /// Returns the target with this URL; `None` when the file has no such target.
     ///
     /// # Errors
     /// Fails when the file cannot be read.
@@ -115,8 +115,8 @@ impl Outbox {
             .doing("reading a target")
     }
 
-    /// Removes every target that is not in `urls`, with its queue, so that retention no longer waits for it. Returns
-    /// the URLs removed.
+    /// Removes every target that is not in `urls`, with its queue, so that retention no longer waits for that target.
+    /// Returns the removed URLs.
     ///
     /// # Errors
     /// Fails when the file cannot be written.
@@ -175,7 +175,7 @@ impl Outbox {
             .doing("reading the last run")
     }
 
-    /// Returns true when the target has every row and no batch is under way; false also for one that is not registered.
+    /// Returns true when the target has every row and no batch is under way; false for an unregistered target.
     ///
     /// # Errors
     /// Fails when the file cannot be read.
@@ -188,7 +188,7 @@ impl Outbox {
     }
 
     /// Returns the next batch, at most `entries` entries of the queue; `None` when the target lacks nothing. A batch
-    /// that may have arrived comes again under its own name, with half of its entries.
+    /// that may have arrived comes again under its own UUID, with half of its entries.
     ///
     /// # Errors
     /// Fails when the file cannot be read or written.
@@ -218,8 +218,8 @@ impl Outbox {
         }))
     }
 
-    /// Notes that the target has committed the pending batch. Does nothing when another program of this file has noted it
-    /// already.
+    /// Notes that the target has committed the pending batch. Does nothing when another program that sends this file
+    /// has noted the batch already.
     ///
     /// # Errors
     /// Fails when the file cannot be written, or when another program has begun another batch.
@@ -277,7 +277,8 @@ fn read_target(connection: &Connection, url: &str) -> rusqlite::Result<Target> {
         })
 }
 
-/// Returns name and end of the batch to send: the pending one, cut to half, or a new one. It is pending from now on.
+/// Returns UUID and last entry of the batch to send: the pending batch, cut to half, or a new one. Stores the batch as
+/// pending.
 fn named(
     tx: &Transaction<'_>,
     target: &Target,

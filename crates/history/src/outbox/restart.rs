@@ -1,11 +1,11 @@
-//! Fills the queue of a target anew: for a new target, for one that has lost rows, and for one to which this file has
-//! become another history of the same rig.
+//! Fills the queue of a target anew: for a new target, for a target that has lost rows, and when this file takes over
+//! from another history of the same rig.
 
 use super::{Outbox, read_target, uuid};
 use crate::error::{Doing, Result};
 use rusqlite::{Transaction, params};
 
-/// Way to begin anew with a target.
+/// How to fill the queue of a target anew.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Restart {
     /// Queues every row again; the target keeps what it has. `last` is the target's last batch of this file: its number
@@ -18,12 +18,13 @@ pub enum Restart {
     TakeOver {
         /// UUID of every run of the rig that the target has.
         known: Vec<String>,
-        /// Rows outside of runs travel when they are younger than this instant, microseconds since 1970 UTC.
+        /// Rows outside of runs are queued when they are younger than this instant, microseconds since 1970 UTC.
         since_us: i64,
     },
 }
 
-/// Tables with a row number of the entries, the run of a row where it has one, and the time of a row outside of runs.
+/// Kind of the entries, table, column with the row number of an entry, expression for the run of a row (NULL outside
+/// of runs), and expression for the time of a row outside of runs.
 const QUEUED: [[&str; 5]; 12] = [
     ["run", "run", "id", "id", "0"],
     ["run_state", "run", "id", "id", "0"],

@@ -9,7 +9,7 @@ use rusqlite::{Connection, Row, params};
 /// New parts of the batch.
 const NEW: &str = "SELECT row_id FROM outbox WHERE target_id = ?1 AND id <= ?2 AND kind = 'part'";
 
-/// Parts of earlier batches of which something became known, with the last entry of each.
+/// Parts of earlier batches that have changed since, with the last queue entry of each.
 const CHANGED: &str = "SELECT row_id, max(id) AS event FROM outbox
     WHERE target_id = ?1 AND id <= ?2 AND kind = 'part_change' GROUP BY row_id";
 
@@ -20,7 +20,7 @@ const STATE: &str =
 struct Table {
     /// Kind of its entries in the queue.
     kind: &'static str,
-    /// Name.
+    /// Name of the table.
     table: &'static str,
     /// Column that the entries name.
     key: &'static str,
@@ -124,7 +124,7 @@ const TABLES: [Table; 10] = [
     ),
 ];
 
-/// Reads the rows that the entries of `target` up to `to` name; leaves name and number of the batch empty.
+/// Reads the rows that the entries of `target` up to `to` name; leaves UUID and number of the batch empty.
 pub(super) fn batch(
     connection: &Connection,
     (target, to): (i64, i64),
@@ -176,7 +176,7 @@ pub(super) fn batch(
     })
 }
 
-/// Entries of one target, up to one of them.
+/// Queue entries of one target, up to a given entry.
 struct Span<'a> {
     connection: &'a Connection,
     target: i64,

@@ -1,4 +1,5 @@
-//! Curves of a batch on paper: set point, reference thermometer and rate over time, with the switchings of its contacts.
+//! Curves of a batch on paper: set point, reference thermometer and rate over time; marks show where a contact
+//! switched.
 
 use super::Paper;
 use super::plot::{LIMIT, LINE, Plot, QUIET, ticked};
@@ -24,7 +25,7 @@ pub(super) fn all(paper: &Paper, batches: &[Batch]) -> Markup {
     }
 }
 
-/// Returns the section of a certificate: the batch of the part, with the switchings of its own contact.
+/// Returns the section of a certificate: the batch of the part, with a mark where its own contact switched.
 pub(super) fn of_part(paper: &Paper, batch: &Batch, seq: u64) -> Markup {
     let language = paper.language;
     let own: Vec<&BatchSocket> = (batch.switched.iter())
@@ -37,7 +38,7 @@ pub(super) fn of_part(paper: &Paper, batch: &Batch, seq: u64) -> Markup {
     }
 }
 
-/// Draws a batch with the switchings of these sockets.
+/// Draws a batch, with a mark where a contact in one of these sockets switched.
 fn figure(paper: &Paper, batch: &Batch, sockets: &[&BatchSocket]) -> Markup {
     let about = Message::new("paper", "batch_of")
         .with("batch", batch.number.to_string())
@@ -52,7 +53,7 @@ fn figure(paper: &Paper, batch: &Batch, sockets: &[&BatchSocket]) -> Markup {
     }
 }
 
-/// Draws set point (grey) and reference, and a mark for each switching: above the curve opened, below it closed.
+/// Draws set point (grey) and reference, with a mark above the curve where a contact opened, below where it closed.
 fn temperature(air: &BatchAir, sockets: &[&BatchSocket]) -> String {
     let mut plot = opened(air, TEMPERATURE, &[&air.set_c, &air.reference_c]);
     line(&mut plot, air, &air.set_c, QUIET);
@@ -70,7 +71,7 @@ fn rate(air: &BatchAir) -> String {
     named(plot, air, "K/min")
 }
 
-/// Makes an empty plot over time in minutes, that holds these values.
+/// Makes an empty plot over time in minutes whose y axis covers these values.
 fn opened(air: &BatchAir, high: f64, all: &[&[Option<f64>]]) -> Plot {
     let values = all.iter().flat_map(|it| it.iter().flatten());
     let [low, top] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, top], it| {
@@ -81,7 +82,7 @@ fn opened(air: &BatchAir, high: f64, all: &[&[Option<f64>]]) -> Plot {
     Plot::new([WIDE, high], [0.0, end_min], range)
 }
 
-/// Writes round minutes below a plot and its unit beside it.
+/// Writes round minutes below a plot and the unit of y at its top right.
 fn named(mut plot: Plot, air: &BatchAir, unit: &str) -> String {
     let end_min = air.t_s.last().copied().unwrap_or(60.0) / 60.0;
     let step = round_step(end_min / 8.0).unwrap_or(10.0);
@@ -93,7 +94,7 @@ fn named(mut plot: Plot, air: &BatchAir, unit: &str) -> String {
     plot.finish()
 }
 
-/// Draws values over time; a value that is missing parts the line.
+/// Draws values over time; a missing value breaks the line.
 fn line(plot: &mut Plot, air: &BatchAir, values: &[Option<f64>], colour: &str) {
     let mut path = String::new();
     let mut joins = false;
@@ -109,7 +110,7 @@ fn line(plot: &mut Plot, air: &BatchAir, values: &[Option<f64>], colour: &str) {
     ));
 }
 
-/// Draws a mark at the reference for each time; `side`: −1 above it, 1 below it.
+/// Draws a mark for each time: above the curve of the reference when `side` is −1, below when it is 1.
 fn mark(plot: &mut Plot, air: &BatchAir, times_s: &[f64], side: f64) {
     for t_s in times_s {
         let Some(celsius) = reference_at(air, *t_s) else {

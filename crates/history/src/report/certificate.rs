@@ -10,8 +10,8 @@ use maud::{Markup, PreEscaped, html};
 use quality::Limits;
 use texts::Lang;
 
-/// Returns the certificate of `part`, which must have its measurements; `run` is the run that tested it, `tested_in` its
-/// batch, if it was tested in one.
+/// Returns the certificate of `part`, which must have its measurements; `run` is the run that tested the part,
+/// `tested_in` its batch, if any.
 pub fn certificate(
     paper: &Paper,
     part: &Part,

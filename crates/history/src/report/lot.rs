@@ -42,7 +42,7 @@ pub struct LotReport<'a> {
 pub struct ParameterValues {
     /// Key of the parameter.
     pub key: String,
-    /// Limits that all runs share; none when they differ.
+    /// Limits that all runs share; none when limits differ.
     pub limits: Limits,
     /// Values in order of time.
     pub values: Vec<f64>,

@@ -73,7 +73,7 @@ impl PlanView {
     }
 }
 
-/// A box of the drawing before y is turned down, mm.
+/// Bounding box in a view, mm, while y still points up.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     low: [f64; 2],
@@ -143,8 +143,8 @@ fn mm(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 
-/// Returns the picture of a step, by its place in the plan, in one view. The moving elements have the class `moves`,
-/// those that hold them or along which they slide `holds`, all others in place `stands`.
+/// Returns the picture of the step with index `place` in one view. Moving elements have the class `moves`, elements
+/// that hold them or along which they slide `holds`, all others in place `stands`.
 pub fn picture(plan: &ToolingPlan, place: usize, view: PlanView, label: &str) -> String {
     let (step, picture) = (&plan.steps[place], &plan.pictures[place]);
     let bodies = &plan.scenes[picture.scene];
@@ -169,7 +169,7 @@ pub fn picture(plan: &ToolingPlan, place: usize, view: PlanView, label: &str) ->
     text + "</svg>"
 }
 
-/// Returns the bodies that stand during a step, each with its class, back to front.
+/// Returns the bodies that stand during a step, each with its class, the farthest from the viewer first.
 fn standing(plan: &ToolingPlan, place: usize, view: PlanView) -> Vec<(usize, &'static str)> {
     let (step, bodies) = (&plan.steps[place], &plan.scenes[plan.pictures[place].scene]);
     let holds = |id: &String| step.held_by.contains(id) || step.slides_on.contains(id);
@@ -243,7 +243,7 @@ fn arrows(text: &mut String, step: &PlanStep, view: PlanView, window: &Window) {
         });
     let mut at = match step.action {
         PlanAction::Remove => window.middle,
-        // What comes ends in the middle.
+        // An element that is put on ends in the middle.
         PlanAction::Add => [window.middle[0] - total[0], window.middle[1] - total[1]],
     };
     let head = 0.03 * window.width;

@@ -26,8 +26,8 @@ impl Formats {
         }
     }
 
-    /// Writes a number, of which the sheet shows `decimals` decimals, or five significant digits as on paper when
-    /// `decimals` is absent. The cell keeps all digits.
+    /// Writes a number. The cell keeps all digits and shows `decimals` decimals, or for `None` five significant digits
+    /// as on paper.
     pub fn number(
         &self,
         to: &mut Worksheet,

@@ -47,7 +47,7 @@ fn title(language: Lang, it: &NamedChart<'_>) -> String {
     format!("{of} – {}", kind(language, it.chart.kind))
 }
 
-/// Returns the remark that only the last `shown` points are drawn; empty when all are.
+/// Returns the remark that only the last `shown` points are drawn; empty when all points are drawn.
 fn cut(language: Lang, points: usize, shown: usize) -> String {
     let cut = Message::new("paper", "last_points")
         .with("shown", shown)

@@ -1,4 +1,4 @@
-//! Tests of the engineers who answer for a recipe.
+//! Tests: engineers whose signatures stand under a recipe.
 
 use super::*;
 use serde_json::json;

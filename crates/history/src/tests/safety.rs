@@ -1,4 +1,4 @@
-//! Tests: whose file it is, which schema it has, what survives a failure.
+//! Tests: owner and schema of a history file, and which rows survive a failure.
 
 use super::*;
 

@@ -13,7 +13,7 @@ fn a_run_names_the_scans_whose_parts_never_came() {
         let order = |what: &str, who: &str, refused: Option<&'static str>| {
             Row::Order(OrderRecord {
                 lot: Some("A".into()),
-                // Before the run was opened: the clock was set back since.
+                // Earlier than the start of the run, because the clock was set back during the run.
                 at_us: 500_000,
                 who: who.into(),
                 what: what.into(),

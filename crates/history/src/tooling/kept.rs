@@ -25,12 +25,12 @@ pub struct Actor {
 pub enum PlanRefusal {
     /// Another plan is under way.
     UnderWay {
-        /// Number of that plan.
+        /// Number of the plan under way.
         plan: i64,
     },
     /// No plan has this number.
     Unknown {
-        /// The number.
+        /// Number in the request.
         plan: i64,
     },
     /// The plan is done or abandoned.
@@ -38,21 +38,21 @@ pub enum PlanRefusal {
         /// Number of the plan.
         plan: i64,
     },
-    /// Steps are done in their order.
+    /// The requested step is not the next one.
     NotNext {
         /// Number of the requested step.
         step: usize,
         /// Number of the step that comes next.
         next: usize,
     },
-    /// Only the last step that is done can be taken back.
+    /// The requested step is not the last one done.
     NotLast {
         /// Number of the requested step.
         step: usize,
         /// Number of the last step that is done; 0 when none is.
         last: usize,
     },
-    /// A plan is abandoned with a reason.
+    /// A plan was to be abandoned without a reason.
     NoReason,
 }
 
@@ -128,7 +128,7 @@ pub struct StepDone {
     pub role: String,
 }
 
-/// A plan that was started, with what is done of it.
+/// A plan that was started, with the steps that are done.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartedPlan {
     /// The entry of the plan in the list.
@@ -338,7 +338,7 @@ impl Archive {
         under_way(self.source.file()?).doing("reading the plan under way")
     }
 
-    /// Returns a plan with what is done of it; `None` when no plan has this number.
+    /// Returns a plan with the steps that are done; `None` when no plan has this number.
     ///
     /// # Errors
     /// Fails when the history cannot be read.

@@ -1,8 +1,8 @@
 //! Plans by which people take tooling off a rig and put it on: steps with drawings, and which of them are done.
 //!
-//! The planner (crate `app`) makes a [`ToolingPlan`]; this module keeps it as it was when a person started it, so a change
-//! of the configuration does not change a plan under way. At most one plan is under way. Its steps are ticked off in
-//! their order, each with person and time, until the last one is done or a person abandons the plan.
+//! The planner (crate `app`) makes a [`ToolingPlan`]; this module stores the plan when a person starts it, so a later
+//! change of the configuration does not change a plan under way. At most one plan is under way. People tick off its
+//! steps in order, each with person and time, until the last one is done or a person abandons the plan.
 
 mod kept;
 mod step;
@@ -88,12 +88,12 @@ pub struct PlanBody {
 pub struct PlanPicture {
     /// Index of the scene in `scenes`.
     pub scene: usize,
-    /// For a step on the bench: the place of the step that moves the subassembly as a whole.
+    /// For a step on the bench: the index of the step that moves the subassembly as a whole.
     pub subassembly: Option<usize>,
 }
 
 impl ToolingPlan {
-    /// Returns the indexes of the bodies that stand in place while the step at this place moves.
+    /// Returns the indexes of the bodies that stay in place while the step with index `place` moves its elements.
     pub fn standing(&self, place: usize) -> Vec<usize> {
         assert_eq!(
             self.pictures.len(),

@@ -63,8 +63,8 @@ impl PlanStep {
         first.chain(then.map(|it| (it.direction.as_str(), it.distance_mm)))
     }
 
-    /// Returns the text for the least distance: a length, rounded down to 0.001 mm, or that it is beyond the range of the
-    /// search.
+    /// Returns the text for the least distance: a length, rounded down to 0.001 mm, or a remark that the distance is
+    /// beyond the range of the search.
     pub fn clearance(&self, lang: Lang) -> String {
         match self.clearance_mm {
             Some(mm) => format!("{} mm", (mm * 1e3).floor() / 1e3),

@@ -3,8 +3,8 @@
 //!
 //! `-- counts` starts this program again under callgrind, once per row and contestant; callgrind counts inside
 //! [`counted`]. The simulated caches have the sizes of [`CACHES`] on every machine. The simulated branch predictor is
-//! simpler than that of today's processors: its count stands for questions that a processor has not learned. With cold
-//! caches `lines fetched` counts the lines of data from memory, those of stack, constants and question included.
+//! simpler than that of today's processors, so its count is one for questions that a processor has not learned. With
+//! cold caches `lines fetched` counts the lines of data from memory, those of stack, constants and question included.
 
 use std::fs;
 use std::hint::black_box;
@@ -21,8 +21,9 @@ const CACHES: [&str; 3] = ["--I1=32768,8,64", "--D1=49152,12,64", "--LL=2097152,
 const FLUSHED_BYTES: usize = 8 << 20;
 /// Number of elements.
 const ELEMENTS: usize = 1_000;
-/// Number of questions of each kind with warm caches; the next number is for cold caches.
+/// Number of questions of each kind with warm caches.
 const QUESTIONS: usize = 1_000;
+/// Number of questions of each kind with cold caches.
 const COLD_QUESTIONS: usize = 40;
 /// States of the caches and of the branch predictor in which questions are asked.
 const STATES: [&str; 3] = ["warm", "no order", "cold"];

@@ -14,7 +14,7 @@ const LOCAL: [&str; 2] = ["jog5", "local300"];
 /// A cost (time, or memory) at every size.
 struct Cost {
     name: String,
-    /// Number of queries behind the mean.
+    /// Number of queries over which the mean is taken.
     n: usize,
     /// Whether the bar applies.
     has_bar: bool,

@@ -28,8 +28,9 @@ const QUERIES: usize = 2_000;
 const COLD_QUERIES: usize = 300;
 /// Margin of the moves in the rows named "margin", mm.
 const MARGIN_MM: f64 = 0.5;
-/// Bar: least ratio of the mean time of parry3d-f64 to that of the core; the next one is that of the 99th percentiles.
+/// Bar: least ratio of the mean time of parry3d-f64 to that of the core.
 const BAR: f64 = 12.0;
+/// Bar: least ratio of the 99th percentile of the time of parry3d-f64 to that of the core.
 const P99_BAR: f64 = 15.0;
 /// Range of the clearance question, mm, as in `relayrig check`.
 const RANGE_MM: f64 = 25.0;

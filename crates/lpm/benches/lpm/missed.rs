@@ -20,9 +20,9 @@ pub fn lifted<'a>(ways: &[Move<'a>]) -> Vec<Move<'a>> {
 }
 
 /// Prints, below a missed bar, the cost of processing poses alone (all elements lie far below), and the cost of poses
-/// plus the search for overlapping boxes. For the latter the mover is four specks in the corners of the gripper's box:
-/// they meet almost nothing, so no hit ends the question early. This shows where the time goes; it does not show that
-/// the bar is out of reach.
+/// plus the search for overlapping boxes. For the second cost the mover is four specks in the corners of the gripper's
+/// box: they meet almost nothing, so no hit ends the question early. These costs show where the time goes, not that the
+/// bar is out of reach.
 pub fn of_question(
     bench: &Bench,
     ways: &[Move],

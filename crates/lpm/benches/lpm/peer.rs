@@ -82,8 +82,8 @@ macro_rules! peer {
                     Compound::new(bodies)
                 }
 
-                /// Returns a function that inserts one leaf into the raw tree and removes it; its bounds are computed
-                /// in advance.
+                /// Returns a function that inserts one leaf into the raw tree and removes the leaf; the bounds of the
+                /// leaf are computed in advance.
                 pub fn editor(&self) -> impl FnMut(&usize) {
                     let bounds = self.scene.aabbs();
                     let spare = bounds.len() as u32;

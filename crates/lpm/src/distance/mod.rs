@@ -44,7 +44,7 @@ pub(crate) struct Proposal {
 
 /// Returns the rounding bound of one evaluated plane between two pieces, mm.
 ///
-/// Only the difference of their positions counts: a kilometre common to both costs no digit.
+/// Only the difference of the positions counts: an offset of a kilometre that both pieces share costs no digit.
 pub(crate) fn noise(a: &Piece, b: &Piece, shift: Vec3) -> f64 {
     NOISE * (a.span + b.span + reach(shift) + reach(between(a, b, shift)))
 }
@@ -83,8 +83,8 @@ pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3
     }
 }
 
-/// Returns the proposal of the closed form. When its direction is the difference of large numbers (two corners a
-/// micrometre apart), refines it by the general search.
+/// Returns the proposal of the closed form, refined by the general search when its direction is the difference of large
+/// numbers (two corners a micrometre apart).
 fn closed_form(element: &Piece, mover: &Piece, shift: Vec3, c: Vec3) -> (Proposal, f64) {
     let (proposal, distance) = upright::propose(element, mover, c);
     let lower = separation(element, mover, shift, proposal.normal);

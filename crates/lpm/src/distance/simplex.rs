@@ -1,6 +1,6 @@
 //! Nearest points of any two convex pieces: a walk over simplices of their difference (GJK).
 //!
-//! This is the method of Gilbert, Johnson and Keerthi on `b - a`, with three differences: the normal of a triangle
+//! The method is that of Gilbert, Johnson and Keerthi on `b - a`, with three differences: the normal of a triangle
 //! comes from its edges, not from the (tiny) nearest vector; a nearest vector on an edge is made orthogonal twice; and
 //! the walk keeps the best plane so far, so that further steps never worsen the answer.
 
@@ -29,7 +29,7 @@ pub(super) struct Corner {
 /// Point of a simplex that is nearest to the origin.
 #[derive(Debug, Clone, Copy)]
 struct Nearest {
-    /// The point.
+    /// Vector from the origin to the nearest point, mm.
     v: Vec3,
     /// A direction along `v` that keeps its digits when `v` is tiny.
     normal: Vec3,

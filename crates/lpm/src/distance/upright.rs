@@ -1,7 +1,7 @@
 //! Closed forms for two upright pieces; each is an interval in z times a rectangle or a disc.
 //!
-//! The distance of two upright prisms is the hypotenuse of their gap in z and the gap of their footprints. It needs no
-//! iteration and no cross product of nearly parallel edges.
+//! The distance of two upright prisms is the hypotenuse of their gap in z and the gap of their footprints. This form
+//! needs no iteration and no cross product of nearly parallel edges.
 
 use super::Proposal;
 use crate::piece::{Form, Piece};

@@ -3,7 +3,7 @@
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-/// First character of the text that stands for a JSON number that is not finite.
+/// First character of the text that replaces a JSON number that is not finite.
 const NOT_FINITE: char = '\u{1}';
 /// Greatest number of characters of a value that a message shows.
 const LONGEST_QUOTE: usize = 120;
@@ -153,8 +153,8 @@ pub(super) fn from_toml(text: &str) -> Result<Node, Unreadable> {
     })
 }
 
-/// Reads JSON. Many programs write `NaN`, `Infinity` and numbers beyond f64, although JSON has none of them. These
-/// become texts, which no field accepts as a number, so that the error names the path of the field.
+/// Reads JSON. Many programs write `NaN`, `Infinity` and numbers beyond f64, although JSON has none of them. The reader
+/// turns them into texts, which no field accepts as a number, so that the error names the path of the field.
 pub(super) fn from_json(text: &str) -> Result<Node, Unreadable> {
     serde_json::from_str(&marked(text)).map_err(|error| {
         let at = match error.line() {

@@ -1,9 +1,9 @@
 //! Reads OBJ: vertices and faces, statement by statement.
 //!
 //! A statement is one line; a backslash at its end continues it on the next line. A comment always ends with its line.
-//! The reader skips points, lines, normals, names and other statements without a surface. It refuses every other
-//! keyword: this may be a surface (`curv`, `surf`) or a damaged face (`F`), and a lost face would leave the mesh open.
-//! It does not detect a file that was cut off between two faces, because the format has no end mark.
+//! The reader skips points, lines, normals, names and other statements without a surface, and refuses every other
+//! keyword, which may be a surface (`curv`, `surf`) or a damaged face (`F`): a lost face would leave the mesh open.
+//! The reader does not detect a file that was cut off between two faces, because the format has no end mark.
 
 use super::face;
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};

@@ -96,7 +96,7 @@ impl Names<'_> {
         refuse(path, Node::Text(found.to_owned()).to_string(), expected)
     }
 
-    /// Fails unless a body has this name; a `*` at the end of the name stands for any ending.
+    /// Fails unless a body has this name; a `*` at the end of the name matches any ending.
     fn body(&self, field: &Field) -> Result<(), SceneError> {
         let found = field.text()?;
         let is_known = match found.strip_suffix('*') {

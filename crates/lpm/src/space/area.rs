@@ -3,11 +3,11 @@
 use super::cover::Cover;
 use super::four::Four;
 
-/// Edge of a square of the grid, mm: about the distance between fixture elements. It is a power of two, so that
-/// dividing by it is exact.
+/// Edge of a square of the grid, mm: about the distance between fixture elements; a power of two, so that dividing by
+/// it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
-/// The outermost column and row, 100 km out; farther places are clamped to it, because no grid reaches as far.
+/// The outermost column and row, 134 km out; farther places are clamped to it, because no grid reaches as far.
 const FARTHEST: f32 = (1 << 21) as f32;
 
 /// First and last column and row of a range of squares, each stored twice, to compare four numbers at once.
@@ -91,8 +91,8 @@ impl Area {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Returns a mask of the squares, of a block of two by two, that the area has: bit 0 is the first, bit 1 the next
-    /// column, bit 2 the next row.
+    /// Returns a mask of the squares, of a block of two by two, that the area has. Bit 0: the first square, bit 1: the
+    /// next column, bit 2: the next row, bit 3: the next column in the next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
         let edge = |axis: usize| (self.high[axis] - self.low[axis]) as u32;

@@ -16,9 +16,10 @@ pub(crate) struct Around<'a> {
     area: Area,
     /// Bundles of the current square.
     chain: Chain<'a>,
-    /// First square of the current block; the next field is the mask of its squares still to visit (bit 0: the first,
-    /// bit 1: the next column, bit 2: the next row).
+    /// First square of the current block.
     first: usize,
+    /// Mask of the squares of the current block still to visit. Bit 0: the first square, bit 1: the next column, bit 2:
+    /// the next row, bit 3: the next column in the next row.
     left: u32,
     /// Number of blocks visited so far; `None` when there is only one block.
     blocks: Option<i32>,

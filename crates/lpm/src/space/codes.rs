@@ -1,7 +1,7 @@
 //! Boxes in codes of 16 bits: places and heights in whole steps, so that one instruction compares eight of them.
 //!
 //! A place becomes a code by one function that never decreases, for stationary pieces and for the mover alike. So two
-//! boxes that overlap have overlapping codes; the reverse need not hold, because a code stands for a whole step.
+//! boxes that overlap have overlapping codes; the reverse need not hold, because a code covers a whole step.
 //! Places beyond the first and the last code get that code, which is as safe.
 
 use super::area::{Area, PITCH_MM};
@@ -14,11 +14,11 @@ use super::sweep::{Pace, Sweep};
 const FIRST: i16 = -i16::MAX;
 const LAST: i16 = i16::MAX - 1;
 
-/// Greatest number of codes in a square, as a power of two: steps of 1/32 mm.
+/// Binary logarithm of the greatest number of codes along a side of a square: steps of 1/32 mm.
 const FINEST: i32 = 11;
-/// Number of codes in a millimetre of height, and the height in the middle of all codes, mm: codes reach from about
-/// -570 to 1470 mm.
+/// Number of codes in a millimetre of height.
 const HEIGHT_PER_MM: f32 = 32.0;
+/// Height of code 0, mm; codes reach from about -570 to 1470 mm.
 const MIDDLE_MM: f32 = 448.0;
 
 /// Codes of a box along x, y and z.
@@ -90,7 +90,7 @@ impl Scale {
                 let place = steps + f64::from(old.middle[axis]) - f64::from(self.middle[axis]);
                 place * f64::from(self.per_mm[axis]) + wider
             };
-            // The first and the last code stand for everything beyond; the codes of a free lane stay too.
+            // The first and the last code cover everything beyond and stay unchanged, as do the codes of a free lane.
             let (low, high) = (extent.low[axis], extent.high[axis]);
             if (FIRST + 1..=LAST).contains(&low) {
                 let low = code(low, -1.0).floor();
@@ -167,11 +167,11 @@ pub(crate) struct Onset {
 struct Axis {
     /// Whether the box moves towards smaller codes, and reaches high codes first.
     is_backward: bool,
-    /// Code that stands for everything beyond it on the side from which the box comes.
+    /// Code that covers everything beyond it on the side from which the box comes.
     beyond: i16,
-    /// Bound of the box that comes first, in steps; the next field is the fraction of the path per step, 0 for an axis
-    /// at rest.
+    /// Bound of the box that comes first, in steps.
     lead: f32,
+    /// Fraction of the path per step; 0 for an axis at rest.
     pace: f32,
 }
 

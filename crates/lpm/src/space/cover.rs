@@ -6,9 +6,9 @@ use crate::vector::Vec3;
 /// Two units in the last place of an f32, relative: more than rounding to nearest and one further step can lose.
 const ULP: f32 = 2.0 * f32::EPSILON;
 
-/// Relative rounding bound (four units in the last place); the next constant is the least normal number, mm, below
-/// which an f32 loses digits.
+/// Relative rounding bound: four units in the last place.
 const SINGLE: f32 = 4.0 * f32::EPSILON;
+/// Least normal number, mm, below which an f32 loses digits.
 const TINY: f32 = f32::MIN_POSITIVE;
 
 /// Returns an f32 that is larger than `x`.

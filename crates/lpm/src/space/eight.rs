@@ -38,12 +38,13 @@ impl Eight {
         machine::negative(self.0)
     }
 
-    /// Returns the smaller number of each pair; the next function returns the larger one.
+    /// Returns the smaller number of each pair.
     #[inline(always)]
     pub(super) fn smaller(self, other: Eight) -> Eight {
         Eight(machine::smaller(self.0, other.0))
     }
 
+    /// Returns the larger number of each pair.
     #[inline(always)]
     pub(super) fn larger(self, other: Eight) -> Eight {
         Eight(machine::larger(self.0, other.0))

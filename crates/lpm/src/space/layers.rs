@@ -33,9 +33,10 @@ static PASSED: [[u32; SHORT]; SHORT + 1] = {
     masks
 };
 
-/// Number of codes of height in a layer, as a power of two; the next number is the layer in the middle of all codes. A
-/// piece below -64 mm belongs to the lowest layer, a piece above 440 mm to the highest one.
+/// Binary logarithm of the number of codes of height in a layer.
 const CODES: u32 = 8;
+/// Number of layers below code 0 of the height. A piece below -64 mm belongs to the lowest layer, a piece above 440 mm
+/// to the highest one.
 const MIDDLE: i16 = 64;
 
 /// The lowest and the highest layer into which a piece reaches.
@@ -77,13 +78,15 @@ impl Reach {
 /// Counts and heights of all layers, and Omega.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    /// Number of pieces that pass through each layer; the next two fields count the pieces that begin and end in it.
+    /// Number of pieces that pass through each layer.
     passing: [u32; LAYERS + SHORT],
+    /// Number of pieces whose bottom lies in each layer.
     beginning: [u32; LAYERS],
+    /// Number of pieces whose top lies in each layer.
     ending: [u32; LAYERS],
-    /// Lowest bottom of the pieces that begin in each layer; the next field is the highest top of those that end in it,
-    /// mm.
+    /// Lowest bottom of the pieces that begin in each layer, mm.
     h1: [f32; LAYERS],
+    /// Highest top of the pieces that end in each layer, mm.
     h2: [f32; LAYERS],
     /// Bottom and top of Omega, mm.
     bottom: f32,

@@ -1,10 +1,10 @@
 //! The checking space Omega over the baseplate: the broad phase of the layer-based projection model.
 //!
-//! Three tests follow each other, and each may end the check. All of them compare boxes that are rounded outward, so
-//! that no piece gets lost:
+//! Three tests follow each other, and each may end the check. All tests compare boxes that are rounded outward, so that
+//! no piece gets lost:
 //! 1. Does the swept mover reach into the height of Omega, and into which layers? ([`layers`])
-//! 2. Which squares of the baseplate does it pass, and does one of them have a piece in these layers? One word per
-//!    square tells ([`grid`]).
+//! 2. Which squares of the baseplate does the mover pass, and does one of them have a piece in these layers? One word
+//!    per square answers ([`grid`]).
 //! 3. Do the silhouettes overlap while the mover passes? Eight are tested at a time ([`silhouettes`], [`boxes`]).
 //!
 //! The pairs that remain go to the exact phase, which tests separating planes and the shapes themselves. Squares are

@@ -5,10 +5,10 @@ use super::cover::Cover;
 use super::eight::Eight;
 use super::layers::Reach;
 
-/// Number of pieces in one bundle; the place of a piece in it is a lane.
+/// Number of pieces in one bundle; the place of a piece in its bundle is a lane.
 pub(crate) const LANES: usize = 8;
 
-/// Number that stands for no bundle and for no piece.
+/// Number that means no bundle and no piece.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// One silhouette of a bundle.
@@ -28,7 +28,7 @@ pub(crate) struct Bundle {
     pieces: [u32; LANES],
 }
 
-/// Limits of heights that keep all lanes but those that are gone.
+/// Limits for the codes of height, lane by lane: they leave a lane as it is, or empty its range of heights.
 struct Limits {
     low: [i16; LANES],
     high: [i16; LANES],
@@ -39,7 +39,7 @@ const ALL: Limits = Limits {
     high: [i16::MAX; LANES],
 };
 
-/// For each lane, the limits that keep all others.
+/// For each lane, the limits that empty this lane and leave all others as they are.
 static WITHOUT: [Limits; LANES] = {
     let mut without = [const { ALL }; LANES];
     let mut lane = 0;

@@ -2,8 +2,8 @@
 //! passes the squares between two lines.
 //!
 //! Both lines are tracked in units of 2^-32 squares. The width includes a reserve for the rounding to units, at most
-//! one per band, so that the strip contains every square that the box passes. It ignores where within a band the box
-//! starts and ends: too many squares are safe.
+//! one per band, so that the strip contains every square that the box passes. The strip ignores where within a band the
+//! box starts and ends: too many squares are safe.
 
 use super::area::{Area, PITCH_MM};
 use super::sweep::{SLACK_MM, Sweep};
@@ -12,7 +12,7 @@ use super::sweep::{SLACK_MM, Sweep};
 const UNIT: f64 = (1u64 << UNIT_BITS) as f64;
 const UNIT_BITS: u32 = 32;
 
-/// Number of squares that stands for infinity: no grid, and no line within a grid, reaches as far.
+/// Number of squares that replaces infinity: no grid, and no line within a grid, reaches as far.
 const BEYOND: f64 = (1 << 28) as f64;
 
 /// The bands of an area, in the order of the path. The box moves farther across the bands than along them.
@@ -24,16 +24,17 @@ pub(super) struct Strip {
     towards: i32,
     /// Number of the last band.
     last: i32,
-    /// Position of the lower line over the next band, from the first row or column of the area; the next two fields are
-    /// that of the upper line, and the advance of both per band. All are in units.
+    /// Position of the lower line over the next band, from the first row or column of the area, in units.
     low: i64,
+    /// Position of the upper line over the next band, from the first row or column of the area, in units.
     high: i64,
+    /// Advance of both lines per band, in units.
     slope: i64,
     /// Last row or column of the area.
     width: i32,
-    /// Length of the path until the box reaches the first band; the next field is the length of the whole path. Both
-    /// are in bands.
+    /// Length of the path until the box reaches the first band, in bands.
     ahead: f64,
+    /// Length of the whole path, in bands.
     run: f64,
     /// Length of the path while the box is over a band, in bands.
     over: f64,

@@ -3,9 +3,8 @@
 use super::cover::Cover;
 use crate::vector::Vec3;
 
-/// Slack of a place along the path, mm. It leaves an ample reserve over the rounding of slopes and products (at most
-/// 2e-9 mm within 3e6 mm), and over the loss next to 0 when [`Area`](super::area::Area) subtracts half a square (at
-/// most 2e-6 mm).
+/// Slack of a place along the path, mm: far more than the rounding of slopes and products (at most 2e-9 mm within
+/// 3e6 mm), and than the loss next to 0 when [`Area`](super::area::Area) subtracts half a square (at most 2e-6 mm).
 pub(crate) const SLACK_MM: f64 = 1e-5;
 
 /// Displacement along an axis below which the box counts as at rest there, mm; every moving box is widened by as much.

@@ -29,8 +29,9 @@ pub(super) struct Walk<'a, V> {
     sweep: &'a Sweep,
     /// Layers into which the box reaches.
     layers: u64,
-    /// Box around the path that remains; the next field has its codes.
+    /// Box around the path that remains.
     cover: Cover,
+    /// Codes of `cover`.
     asked: Asked,
     onset: Option<Onset>,
     /// Fraction of the path up to which pieces still matter.

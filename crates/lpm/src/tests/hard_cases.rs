@@ -234,7 +234,7 @@ fn a_graze_of_turned_bodies_stops_within_its_bound() {
         );
         earliest = earliest.max(early);
     }
-    // The bound is not far too wide: the worst case comes within a factor of 100.
+    // The bound is not far too wide: the earliest stop comes within a factor of 100 of the bound.
     assert!(earliest > GRAZED_EARLY_MM / 100.0, "{earliest}");
 }
 

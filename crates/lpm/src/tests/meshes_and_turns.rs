@@ -103,7 +103,7 @@ fn a_closed_mesh_is_solid_an_open_one_hollow() {
     let open = standing(&box_mesh(20.0, false), Pose::IDENTITY);
     assert_eq!(stop(&open, &mover, &inside), None);
     assert!((least(&open, &mover, &inside) - 18.0).abs() < 1e-9);
-    // The other way round: the mover surrounds the element.
+    // Now the mover surrounds the element.
     let pin = standing(&cylinder(1.0, 2.0), Pose::IDENTITY);
     assert_eq!(stop(&pin, &box_mesh(20.0, true), &inside), Some(0.0));
     assert_eq!(stop(&pin, &box_mesh(20.0, false), &inside), None);

@@ -64,7 +64,7 @@ fn a_part_between_two_walls_slides_both_ways() {
 fn shafts_leave_holes_of_any_fit_along_the_axis() {
     for place in PLACES_MM {
         for clearance_mm in [1e-3, 1e-6, 1e-9, 0.0] {
-            // The shaft lies beside the axis, and then tilted by as much over its length.
+            // The shaft lies 1e-9 mm beside the axis, and then tilted by as much over its length.
             for (askew_mm, tilt) in [(0.0, 0.0), (1e-9, 0.0), (0.0, 1e-9 / 30.0)] {
                 let shaft = Shape::Cylinder {
                     radius: 5.0 - clearance_mm,

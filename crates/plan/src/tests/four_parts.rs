@@ -1,7 +1,7 @@
 //! The four-part example: a base with a hole, a shaft in it, a plate with a hole around the shaft, a cap on the shaft.
 //!
-//! The paper shows tables for an assembly of four parts; its text does not give their entries. These are the tables of
-//! the same kinds for the parts named above.
+//! The paper shows tables for an assembly of four parts, but its text does not give the entries. The tables here are of
+//! the same kinds, for the parts named above.
 use super::*;
 
 fn parts() -> Assembly {

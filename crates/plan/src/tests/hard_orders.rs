@@ -161,7 +161,7 @@ fn a_subassembly_leaves_whole_and_comes_apart_outside() {
     assert_eq!(told[0], "lower comb+upper comb +z");
     assert_eq!(sequence.steps.len(), 3);
     assert_eq!(sequence.steps[1].bench, Some(0));
-    // As a group they leave in the same way, and stay together.
+    // As a group, both combs leave in one step.
     let grouped = Demands {
         groups: vec![["lower comb", "upper comb"].map(str::to_owned).to_vec()],
         ..demands

@@ -39,7 +39,7 @@ fn random_scenes_get_the_order_of_brute_force() {
                     "seed {seed}: {found:?}"
                 );
                 locked += 1;
-                // With ways of two steps and subassemblies some of these come apart; every step is verified.
+                // With ways of two steps and subassemblies some of these scenes come apart; every step is verified.
                 let freely = planned(&assembly, &Demands::default());
                 freed += usize::from(matches!(freely, Outcome::Sequence(_)));
             }

@@ -1,4 +1,4 @@
-//! Bad input is refused with its name.
+//! Bad input is refused, and the message names the input at fault.
 use super::*;
 
 fn two() -> Vec<Element> {

@@ -6,10 +6,10 @@ use std::time::Instant;
 
 /// Number of passes over the moves. The fastest pass of a move counts, because other processes disturbed it least.
 const PASSES: usize = 3;
-/// Time in seconds from which a move runs in the first pass only.
+/// Time of the first pass, seconds, from which a move runs in no further pass.
 const SLOW_S: f64 = 1e-4;
 
-/// Function that returns the first contact of a move as a fraction of it; `None` for a clear move.
+/// Function that returns the first contact as a fraction of the move; `None` for a clear move.
 pub type Query = Box<dyn FnMut(&TestMove) -> Option<f64>>;
 
 /// One way to check a move.

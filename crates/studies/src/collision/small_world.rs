@@ -12,7 +12,7 @@ const EARLY: f64 = 1e-9;
 /// Counts of moves and of wrong answers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SmallWorldCounts {
-    /// All moves.
+    /// Number of all moves.
     pub moves: u64,
     /// Moves with a contact that the core calls clear.
     pub missed: u64,

@@ -40,8 +40,9 @@ const REFEREE_BAR: f64 = 0.556;
 const DOOR_BAR_K: f64 = 0.3;
 /// Number of randomly drawn chambers.
 const CHAMBERS: u64 = 20;
-/// Share of the heater power in the trials with a weak heater; the next number is for a strong one.
+/// Share of the heater power in the trials with a weak heater.
 const WEAK: f64 = 0.5;
+/// Share of the heater power in the trials with a strong heater.
 const STRONG: f64 = 1.5;
 
 /// Trials of one controller in the air chamber.

@@ -48,14 +48,14 @@ impl Medium {
     }
 }
 
-/// Range of the room, C.
+/// Range of the room temperature, C.
 const ROOM_C: [f64; 2] = [18.0, 28.0];
 /// Standard uncertainty of a calibrated chain, from which the study draws its bias, K.
 pub const CHAIN_K: f64 = 0.05;
 /// Standard deviation of delay and lag of the sensors, percent.
 const SENSOR_SPREAD_PCT: f64 = 30.0;
 
-/// Draws a chamber with control and reference sensor at random; draws the room temperature too when it is `None`.
+/// Draws a chamber with control and reference sensor at random, and the room temperature too when `room_c` is `None`.
 pub fn drawn(medium: Medium, room_c: Option<f64>, seed: u64) -> (ChamberValues, [SensorValues; 2]) {
     let mut draw = Draw::new(seed, Subject::Rig, 3);
     let (nominal, sensor) = medium.values();
@@ -78,7 +78,7 @@ pub struct Plant {
     control: Sensor,
     reference: Sensor,
     draw: Draw,
-    /// Ratio of the power of the heater to that at nominal mains.
+    /// Ratio of the heater power to the heater power at nominal mains voltage.
     pub mains: f64,
     /// True while the door is open.
     pub door_open: bool,
@@ -113,7 +113,8 @@ impl Plant {
         Self::new(&values, [sensor; 2], values.ambient_c, seed)
     }
 
-    /// Advances by a second; calls `follow` with each part of it, s, and the temperatures at its end.
+    /// Advances by a second, in short steps; calls `follow` with the length of each step, s, and the temperatures at
+    /// the end of the step.
     pub fn step_with(&mut self, command: Command, mut follow: impl FnMut(f64, &Temperatures)) {
         let drive = Drive {
             duty: command.heater,
@@ -137,7 +138,7 @@ impl Plant {
         self.step_with(command, |_, _| {});
     }
 
-    /// Returns what the controller sees.
+    /// Returns the readings that the controller gets.
     pub fn seen(&self) -> Observed {
         Observed {
             measured_c: self.control_c,

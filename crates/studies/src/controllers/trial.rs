@@ -13,7 +13,7 @@ const ENDS_C: [f64; 2] = [40.0, 100.0];
 const BEFORE_S: usize = 1500;
 /// Time at the upper end after a ramp, s.
 const AFTER_S: usize = 900;
-/// Part of that time that counts as hold, at its end, s.
+/// Last part of the time at the upper end, which counts as hold, s.
 const HOLD_S: usize = 300;
 /// Error within which the chamber has settled, K.
 const SETTLED_K: f64 = 0.2;

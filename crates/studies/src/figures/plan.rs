@@ -42,12 +42,12 @@ pub struct Run {
     /// Sentences below the heading.
     #[serde(default)]
     pub about: String,
-    /// Program and arguments of the run, separated by spaces; the runner adds `--json`. The word `relayrig` stands for
-    /// this program.
+    /// Program and arguments of the run, separated by spaces; the runner adds `--json`. The word `relayrig` means this
+    /// program.
     pub command: String,
     /// Machine that the figures need.
     pub machine: Machine,
-    /// Prefixes of the names of the figures to show; when empty, the document shows all. It always shows a missed bar.
+    /// Prefixes of the names of the figures to show; when empty, the document shows all. A missed bar is always shown.
     #[serde(default)]
     pub shows: Vec<String>,
     /// Pictures below the figures.

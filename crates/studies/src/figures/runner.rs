@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 use tempfile::TempDir;
 
-/// Word of a command that stands for this program.
+/// Word of a command that means this program.
 const OWN: &str = "relayrig";
 
 /// Runs one command of the plan; stores its figures and the pictures that it draws.

@@ -16,7 +16,7 @@ use tokio::runtime::Runtime;
 
 /// Days over which the parts are spread.
 const DAYS: i64 = 365;
-/// Questions of each kind.
+/// Number of questions of each kind.
 const ASKED: u64 = 60;
 const DAY_US: i64 = 86_400_000_000;
 
@@ -66,7 +66,7 @@ pub(super) fn figures(
     Ok([database, questions])
 }
 
-/// Filters by rig, lot, verdict and range of a value.
+/// Times filters by rig, lot, verdict and range of a value.
 fn filters(
     of_rig: impl Fn(u64) -> anyhow::Result<Archive>,
     order: &Order,
@@ -98,7 +98,7 @@ fn filters(
     )
 }
 
-/// Counts yield by rig and day of a month.
+/// Times counts of the yield by rig and day of a month.
 fn months(all: &Archive) -> anyhow::Result<Figure> {
     let now_us = jiff::Timestamp::now().as_microsecond();
     let day = [Shift {
@@ -122,7 +122,7 @@ fn months(all: &Archive) -> anyhow::Result<Figure> {
         .with("parts_each", Some(counted as f64)))
 }
 
-/// Reads the lives of serial numbers, down to the values.
+/// Times reading all tests of a serial number, down to the values.
 fn lives(all: &Archive, order: &Order) -> anyhow::Result<Figure> {
     let mut times = Vec::new();
     for n in 0..ASKED {
@@ -141,7 +141,7 @@ fn quantiles(name: &str, times: &[f64]) -> Figure {
         .with("worst", ordered.quantile(1.0))
 }
 
-/// Returns the bytes of the tables of the server: its folder without the log of transactions.
+/// Returns the size of the server's tables, bytes: that of its data folder without the log of transactions.
 fn size(data: &Path) -> anyhow::Result<u64> {
     let mut bytes = 0;
     for entry in std::fs::read_dir(data.join("base"))? {

@@ -12,11 +12,11 @@ use quality::Ordered;
 use std::path::Path;
 use tokio::runtime::Runtime;
 
-/// Measurements of a part.
+/// Number of measurements of a part.
 const VALUES: usize = 24;
-/// Parts of a week.
+/// Number of parts that a rig tests in a week.
 const WEEK: f64 = 300_000.0;
-/// Parts written one by one.
+/// Number of parts written one by one.
 const SINGLE: u64 = 300;
 /// Time of a cycle of the rig, ms.
 const CYCLE_MS: f64 = 1440.0;
@@ -187,7 +187,7 @@ fn plain(server: &Trial, folder: &Path) -> anyhow::Result<f64> {
 
 /// Returns the processor time that this program has used, seconds.
 fn cpu_s() -> anyhow::Result<f64> {
-    /// Ticks of a second, in /proc on every Linux.
+    /// Clock ticks per second in `/proc`, on every Linux.
     const TICKS: f64 = 100.0;
     let stat = std::fs::read_to_string("/proc/self/stat")?;
     let fields = stat.rsplit_once(')').map_or("", |(_, fields)| fields);

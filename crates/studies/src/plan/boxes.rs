@@ -10,15 +10,16 @@ use plan::{Assembly, Direction, Element, Interference, PlanError, Tolerance};
 /// Number of scenes with shafts, and of scenes with bevels.
 const SCENES: u64 = 100;
 
-/// Counts of blocks, each by element, direction and blocker.
+/// Numbers of cases in which an element, the blocker, keeps another element from leaving in a direction.
 #[derive(Default)]
 struct Blocks {
+    /// Cases that the boxes of the elements show.
     boxes: u64,
-    /// Blocks by boxes that the bodies do not confirm.
+    /// Cases that boxes show and the true bodies do not.
     wrong: u64,
-    /// Blocks by bodies that boxes miss.
+    /// Cases that the true bodies show and boxes do not.
     missed: u64,
-    /// Blocks along the one axis on which the scene leaves an element free.
+    /// Part of `wrong` along z, the one axis on which the scene leaves an element free.
     along: u64,
 }
 

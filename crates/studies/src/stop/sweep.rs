@@ -3,7 +3,7 @@
 use super::LATE_MS;
 use crate::order::Order;
 
-/// Number of parts from one stop to the next: after a stop two go to retest, then the line runs evenly again.
+/// Number of parts from one stop to the next: after a stop two parts go to retest, then the line runs evenly again.
 const PARTS_BETWEEN: u64 = 5;
 /// Time after a nest exit, seconds, when a test is half done: jaws closed, probes up, z down, the next part in the
 /// pocket, so that homing has long strokes.
@@ -41,8 +41,8 @@ impl Sweep {
         }
     }
 
-    /// Returns the number of presses of the emergency stop that the script makes for one instant. Only the last press falls
-    /// on that instant, and only the reaction to it counts; an earlier press brings the rig into homing.
+    /// Returns the number of presses of the emergency stop that the script makes for one instant. Only the last press
+    /// falls on that instant, and only the reaction to this press counts; an earlier press brings the rig into homing.
     pub const fn presses(self) -> usize {
         match self {
             Self::Cycle => 1,

@@ -27,7 +27,7 @@ pub const EPOCH_US: i64 = 1_800_000_000_000_000;
 /// station.
 const LONGEST_US: u64 = 300_000_000;
 
-/// End of a life.
+/// How a life of the controller ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
     /// The study killed the program.
@@ -49,7 +49,7 @@ pub struct EndedLife {
     pub began_us: u64,
     /// Rig time at the end of the life, microseconds.
     pub ended_us: u64,
-    /// How the life ended.
+    /// End of the life.
     pub end: End,
     /// Orders of the operator with their answers.
     pub answers: Vec<Answered>,

@@ -1,6 +1,6 @@
 //! A simulated operator: gives sensible and random orders, including orders that the station refuses, and restarts the
-//! line from any state. It ends the program when the lot is complete or after [`LIFE_TIMEOUT`], and aborts a program
-//! that still runs [`LIFE_TIMEOUT`] later.
+//! line from any state. The operator ends the program when the lot is complete or after [`LIFE_TIMEOUT`], and aborts a
+//! program that still runs [`LIFE_TIMEOUT`] later.
 
 use crate::dice::Dice;
 use bus::Pace;

@@ -1,7 +1,7 @@
 //! The scenario of a seed: a rig, faults of world and line, and the lives of the controller. A life is one run of the
 //! controller program, from its start to its end or kill.
 //!
-//! No fault lasts beyond [`CEASES_US`] of rig time: the study then also cancels each fault that still waits for its
+//! No fault lasts beyond [`CEASES_US`] of rig time: at that time the study cancels each fault that still waits for its
 //! part. Lives that start later have no faults.
 
 use crate::dice::Dice;
@@ -72,7 +72,8 @@ pub struct Scenario {
     pub faults: Vec<String>,
     /// Instants at which a safety input is disturbed, microseconds.
     pub disturbed_us: Vec<u64>,
-    /// Whether a line may be deaf or slow for a while: outputs then wait for the watchdogs of their modules.
+    /// Whether a line may be deaf or slow for a while: outputs then stay on until the watchdogs of their modules
+    /// expire.
     pub lines_disturbed: bool,
     /// Lives while faults happen.
     pub lives: Vec<Life>,

@@ -64,8 +64,8 @@ fn is_han(c: char) -> bool {
     ('\u{4e00}'..='\u{9fff}').contains(&c)
 }
 
-/// Returns every `relayrig ...` command line, continued lines joined, quoted or in fenced code, with its line. A synopsis such as
-/// `relayrig [--config DIR] COMMAND` is none.
+/// Returns every `relayrig ...` command line, quoted or in fenced code, with its line; joins continued lines. Leaves
+/// out a synopsis such as `relayrig [--config DIR] COMMAND`.
 pub fn command_lines(text: &str) -> Vec<(usize, String)> {
     let joined = text.replace("\\\n", "");
     let fenced = fenced(&joined)

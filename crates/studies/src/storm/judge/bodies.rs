@@ -1,7 +1,7 @@
 //! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that every row has
 //! a body, and that no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the
-//! verdict, and by the body that came to rest in the bin when the beam confirmed it. A body that clung to another one
-//! has no row, because the rig never judged it; the alarm of the beam that counted it names its bin.
+//! verdict, and by the body that came to rest in the bin when the beam confirmed the part. A body that clung to another
+//! one has no row, because the rig never judged it; the alarm of the beam that counted this body names its bin.
 
 use super::{Case, rig_us, seconds};
 use crate::storm::life::{End, EndedLife};
@@ -13,7 +13,7 @@ use rigsim::truth::{BodyTruth, Place};
 const CONFIRMED_US: u64 = 3_000_000;
 /// Time that the fingers take to open, microseconds: a run that ends meanwhile declares the part lost before it falls.
 const OPENING_US: u64 = 300_000;
-/// Longest time until the reset that detects a lost part, microseconds: the operator may wait this long before it.
+/// Longest time until the reset that detects a lost part, microseconds: the operator may wait this long.
 const NOTICED_US: u64 = 60_000_000;
 /// Codes of the alarms that declare a part lost.
 const DECLARED: [&str; 6] = [
@@ -81,7 +81,7 @@ fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
         .map(|(number, _)| number)
 }
 
-/// Returns the body that was in the nest at the verdict. For a part without a test it prefers the body in the gripper,
+/// Returns the body that was in the nest at the verdict. For a part without a test, prefers the body in the gripper,
 /// unless that body already has a row of the same life.
 fn body_by_place(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<usize> {
     let judged_us = rig_us(row.time);
@@ -188,8 +188,8 @@ fn is_declared(case: &Case, at_us: u64) -> bool {
     has_alarm(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
 
-/// Returns true when an alarm counts a second body in `bin`, or when a kill may have prevented it: a killed life may
-/// have confirmed the first body and not yet counted the second.
+/// Returns true when an alarm counts a second body in `bin`, or when a kill may have prevented this alarm: a killed
+/// life may have confirmed the first body and not yet counted the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
     let cut_off = case
