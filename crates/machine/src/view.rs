@@ -196,7 +196,7 @@ pub struct AlarmLine {
     pub text_zh: String,
     /// `unacknowledged`, `acknowledged`, `returned`.
     pub state: String,
-    /// True when no other alarm was active when its cause last appeared.
+    /// True for the alarm whose cause last appeared while no other alarm was active.
     pub first_out: bool,
     /// Occurrences since the alarm was last normal.
     pub count: u32,

@@ -115,10 +115,10 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
     }
     turn.drive(Move::EscapementHold);
     turn.report(
-        match (attempt < TRIES, turn.shows(DigitalIn::TrackLevel, true)) {
+        match (attempt < TRIES, turn.shows(DigitalIn::TrackLevel, false)) {
             (true, _) => Trouble::Retried(Move::EscapementRelease, ARRIVES),
-            (false, true) => Trouble::NoPart,
-            (false, false) => Trouble::MagazineEmpty,
+            (false, true) => Trouble::MagazineEmpty,
+            (false, false) => Trouble::NoPart,
         },
     );
     Feed::Closing { attempts: attempt }

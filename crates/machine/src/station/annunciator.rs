@@ -40,7 +40,7 @@ pub struct ListedAlarm {
     pub raised: RigTime,
     /// Number of occurrences.
     pub count: u32,
-    /// True when no other alarm was active when its cause last appeared.
+    /// True for the alarm whose cause last appeared while no other alarm was active.
     pub first_out: bool,
     /// End of the time for which the alarm is shelved; `None` while it is not shelved.
     pub shelved_until: Option<RigTime>,
@@ -101,6 +101,10 @@ impl Annunciator {
         } else {
             Condition::Unacknowledged
         };
+        let first_out = quiet && !at_once;
+        if first_out {
+            self.listed.iter_mut().for_each(|one| one.first_out = false);
+        }
         let mut same = self
             .listed
             .iter_mut()
@@ -114,7 +118,7 @@ impl Annunciator {
                 condition,
                 raised: now,
                 count: 1,
-                first_out: quiet && !at_once,
+                first_out,
                 shelved_until: None,
                 inherited: false,
             });
@@ -129,7 +133,7 @@ impl Annunciator {
         known.alarm = alarm.clone();
         if again {
             known.condition = condition;
-            known.first_out = quiet && !at_once;
+            known.first_out = first_out;
             known.inherited = false;
         }
         true

@@ -217,8 +217,8 @@ impl Register {
         change
             .execute("DELETE FROM session WHERE person = ?1", [name])
             .doing(DOING)?;
-        change.commit().doing(DOING)?;
-        require_found(found, name)
+        require_found(found, name)?;
+        change.commit().doing(DOING)
     }
 
     /// Gives a person another role. Fails for an unknown name, and for the last engineer.

@@ -47,7 +47,11 @@ pub fn pair_limits(scene: &Scene, bodies: &[Body], pair: (usize, usize)) -> Opti
     if a.moves == b.moves {
         return None;
     }
-    let rule = scene.pair.iter().find(|it| it.is_of(&a.name, &b.name));
+    let rule = scene
+        .pair
+        .iter()
+        .rev()
+        .find(|it| it.is_of(&a.name, &b.name));
     let touch_mm = scene.guard.touch_depth_mm;
     let (depth_mm, deeper) = match rule.map(|it| (it.rule, it)) {
         None | Some((Rule::Forbidden, _)) => (0.0, None),

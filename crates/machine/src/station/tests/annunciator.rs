@@ -102,6 +102,18 @@ fn the_first_alarm_is_first_out_and_repeats_count() {
 }
 
 #[test]
+fn a_new_first_alarm_takes_the_mark_over() {
+    let mut list = Annunciator::default();
+    list.raise(&jam(), RigTime(1));
+    list.cleared();
+    list.raise(&door(), RigTime(2));
+    let listed = list.listed().iter();
+    let first: Vec<_> = listed.filter(|one| one.first_out).collect();
+    assert_eq!(first.len(), 1, "the jam has returned");
+    assert_eq!(first[0].alarm, door());
+}
+
+#[test]
 fn a_shelved_alarm_returns_after_its_time() {
     let mut list = Annunciator::default();
     list.raise(&door(), RigTime(0));

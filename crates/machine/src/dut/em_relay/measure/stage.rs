@@ -114,9 +114,10 @@ impl Stage {
         }
     }
 
-    /// Every stage but conditioning once, with the first attempt and one direction.
-    pub const ALL: [Self; 11] = [
+    /// Every stage once, with the first attempt and one direction.
+    pub const ALL: [Self; 12] = [
         Self::Kelvin,
+        Self::Conditioning,
         Self::NcContact,
         Self::Coil,
         Self::Search(Direction::Rising),
