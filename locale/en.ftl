@@ -633,6 +633,7 @@ refusal-scans_too_many = load the scanned parts first
 refusal-scans_dropped = take these parts of an earlier run out of the magazine and acknowledge the alarm first: { $serials }
 refusal-no_such_alarm = no such alarm is active
 refusal-collision = { $detail }
+refusal-start_without_recipe = recipe: found none, expected the recipe of the new lot { $lot }
 refusal-start_without_lot = lot: found none, expected a lot beside recipe, count or retest
 refusal-not_of_the_rig = this order changes records of the history, not the machine: give it at the page of the service
 refusal-shelve_without_reason = reason: found nothing, expected why the alarm is shelved
@@ -1835,7 +1836,7 @@ paper-bin_share = bin { $bin }
 paper-of_characteristic = { $name }: { $text }
 paper_verdict-pass = pass
 paper_verdict-fail = fail
-paper_verdict-void = not judged
+paper_verdict-void = void
 paper_verdict-unjudged = imported without verdict
 
 ## Operation process card: steps with what is done, with what, and what sensors must report; then words of figures

@@ -604,6 +604,7 @@ refusal-scans_too_many = 先放入已扫描的工件
 refusal-scans_dropped = 先从料道取出上次运行的这些工件，并确认报警：{ $serials }
 refusal-no_such_alarm = 没有该报警
 refusal-collision = 防碰撞检查拒绝：{ $detail }
+refusal-start_without_recipe = 缺少配方：新批次 { $lot } 须填写配方
 refusal-start_without_lot = 缺少批次：填写配方、数量或复测时，须同时填写批次
 refusal-not_of_the_rig = 此操作只修改历史记录，不涉及设备：请在运行服务的页面上操作
 refusal-shelve_without_reason = 请填写搁置原因

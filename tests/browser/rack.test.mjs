@@ -44,6 +44,19 @@ test("curve and sockets follow the batch", async () => {
   await leave(page);
 });
 
+test("a part in the history shows the curve of its batch", async () => {
+  const page = await visit(browser, rig, { path: "/#history" });
+  await page.waitForFunction(() => document.querySelectorAll("#parts tr a").length > 10);
+  await page.click("#parts tr a");
+  await page.waitForSelector("#part_batch:visible");
+  await page.waitForSelector("#part_air .reference[d^=M]", { state: "attached" });
+  await page.waitForSelector("#part_air .opened[d^=M]", { state: "attached" });
+  const times = await page.$eval("#part_air .reference", (it) => it.getAttribute("d").split("L").length);
+  assert.ok(times > 100, `${times} points`);
+  await looks(page, "rack-part");
+  await leave(page);
+});
+
 for (const size of SIZES) {
   test(`at ${size.width}x${size.height} the rack fits and can be read`, async () => {
     const page = await visit(browser, rig, { size, role: "operator" });

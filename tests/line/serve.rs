@@ -238,6 +238,8 @@ fn a_refused_start_names_the_gate_and_lots_continue() {
     let start = |lot: &str, recipe: &str| json!({"order": "start", "lot": lot, "recipe": recipe, "count": 40});
     let why = served.refused(&start("A", "jzc-99"));
     assert!(why.contains("jzc-99") && why.contains(RECIPE), "{why}");
+    let why = served.refused(&json!({"order": "start", "lot": "A"}));
+    assert!(why.contains("the recipe of the new lot A"), "{why}");
     let why = served.refused(&json!({"order": "start", "lot": "", "recipe": RECIPE}));
     assert!(why.contains("1 to 200"), "{why}");
     let why = served.refused(
@@ -262,7 +264,7 @@ fn a_refused_start_names_the_gate_and_lots_continue() {
     let why = served.refused(&start("A", "jzc-22f-009"));
     assert!(why.contains("cannot change to another"), "{why}");
 
-    served.order(&start("A", RECIPE));
+    served.order(&json!({"order": "start", "lot": "A", "count": 40}));
     served.until("goes on", |view| view["under_way"] == true);
     served.until("judged", |view| view["judged"].as_u64() >= Some(1));
     assert_eq!(served.interrupted(), 4, "a lot was stopped");

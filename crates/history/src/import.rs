@@ -11,7 +11,7 @@ use super::{MeasurementRecord, Moment, PartRecord};
 use machine::dut::Reason;
 
 /// Columns of an export that an import ignores.
-const PASSED_OVER: [&str; 9] = [
+const IGNORED: [&str; 9] = [
     "type",
     "lot",
     "run",
@@ -87,7 +87,7 @@ enum Column {
     Bin,
     Reasons,
     Parameter,
-    PassedOver,
+    Ignored,
 }
 
 /// Reads records, of which the first is the header. `maps` renames columns (from, to); `parameters` are the known keys.
@@ -111,6 +111,21 @@ pub fn parse_records(
         .iter()
         .map(|record| row(record, &columns, &names))
         .collect()
+}
+
+/// Returns the columns of the header that an import ignores, by their names in the file.
+pub fn ignored_columns(records: &[Record]) -> Vec<String> {
+    let header = records.first().map(|it| it.fields.iter());
+    let names = header.into_iter().flatten().map(|it| it.trim());
+    names
+        .filter(|it| is_ignored(it))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Returns true for a column that only an export writes.
+fn is_ignored(name: &str) -> bool {
+    IGNORED.contains(&name) || name.starts_with(UNCERTAINTY)
 }
 
 fn row(record: &Record, columns: &[Column], names: &[String]) -> Result<ImportRow, ImportError> {
@@ -182,7 +197,7 @@ fn column(name: &str, parameters: &[String]) -> Result<Column, ImportError> {
         "bin" => Column::Bin,
         "reasons" => Column::Reasons,
         key if parameters.iter().any(|known| known == key) => Column::Parameter,
-        name if PASSED_OVER.contains(&name) || name.starts_with(UNCERTAINTY) => Column::PassedOver,
+        name if is_ignored(name) => Column::Ignored,
         other => {
             let (found, known) = (other.to_owned(), parameters.join(", "));
             return Err(ImportError::UnknownColumn { found, known });
@@ -207,7 +222,7 @@ fn take(row: &mut ImportRow, column: &Column, name: &str, cell: &str) -> Result<
             row.part.reasons = typed.map(Reason::from_text).collect();
         }
         Column::Parameter => row.part.measurements.push(measurement(name, cell)?),
-        Column::PassedOver => {}
+        Column::Ignored => {}
     }
     Ok(())
 }

@@ -95,7 +95,7 @@ pub use filter::Filter;
 pub use gates::{
     HoldReason, LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
 };
-pub use import::{ImportError, ImportRow, parse_records};
+pub use import::{ImportError, ImportRow, ignored_columns, parse_records};
 pub use inside::InsideRecord;
 pub use lot_book::LotEntry;
 pub use lot_name::{LOT_NAME, is_lot_name};

@@ -51,7 +51,14 @@ pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<Exit> {
         sheet: args.sheet.as_deref(),
         maps: &args.maps,
     };
-    let Imported { parts, run } = import(db, &source, &args.lot)?;
+    let Imported {
+        parts,
+        run,
+        ignored,
+    } = import(db, &source, &args.lot)?;
     eprintln!("{name}: {parts} parts into lot {:?}, run {run}", args.lot);
+    if !ignored.is_empty() {
+        eprintln!("{name}: ignored columns {}", ignored.join(", "));
+    }
     Ok(Exit::Done)
 }

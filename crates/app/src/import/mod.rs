@@ -7,7 +7,8 @@ mod tests;
 
 use anyhow::Context;
 use history::{
-    Archive, Filter, ImportRow, LotRecord, PartRecord, Store, csv, parse_records, snapshot_hash,
+    Archive, Filter, ImportRow, LotRecord, PartRecord, Store, csv, ignored_columns, parse_records,
+    snapshot_hash,
 };
 use std::path::Path;
 
@@ -31,6 +32,8 @@ pub struct Imported {
     pub parts: usize,
     /// Number of the run within its lot.
     pub run: u32,
+    /// Columns of the file that the import ignores, such as those of uncertainties.
+    pub ignored: Vec<String>,
 }
 
 /// Puts the parts of a file into a new run of `lot`.
@@ -54,6 +57,7 @@ pub fn import(db: &Path, source: &Source, lot: &str) -> anyhow::Result<Imported>
     Ok(Imported {
         parts: parts.len(),
         run: store.import(&record, parts)?,
+        ignored: ignored_columns(&records),
     })
 }
 

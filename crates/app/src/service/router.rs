@@ -134,25 +134,26 @@ impl OrderRouter {
 
     /// Returns the lot of a `start` order; fails when the lot is not admitted.
     async fn admitted(&self, order: &Order) -> Result<AfterRun, Message> {
-        let order = match order.clone() {
-            Order::Start {
-                lot: Some(lot),
-                recipe,
-                count,
-                retest,
-            } => LotOrder {
-                lot,
-                recipe: recipe.unwrap_or_default(),
-                count,
-                retest,
-            },
-            _other => return Err(not_now()),
+        let Order::Start {
+            lot: Some(lot),
+            recipe,
+            count,
+            retest,
+        } = order.clone()
+        else {
+            return Err(not_now());
         };
         let router = self.clone();
         let check = move || {
             let RouterState {
                 db, plant, source, ..
             } = &*router.0;
+            let order = LotOrder {
+                recipe: recipe.map_or_else(|| recipe_of(db, &lot), Ok)?,
+                lot,
+                count,
+                retest,
+            };
             let recipe = admission::admit(db, plant, &order, Purpose::Lot)
                 .map_err(|why| why.screen_message())?;
             match admission::calibration_refusal((db, plant), &recipe, source) {
@@ -251,6 +252,13 @@ async fn blocking<T: Send + 'static>(
 ) -> Result<T, Message> {
     let done = tokio::task::spawn_blocking(work).await;
     done.unwrap_or_else(|error| Err(trouble(&error)))
+}
+
+/// Returns the name of the recipe with which a lot began; fails for a lot that never began.
+fn recipe_of(db: &Path, lot: &str) -> Result<String, Message> {
+    let standing = admission::standing(db, lot).map_err(|error| trouble(&error))?;
+    let named = standing.map(|it| it.recipe);
+    named.ok_or_else(|| refused("start_without_recipe").with("lot", lot))
 }
 
 fn refused(code: &'static str) -> Message {

@@ -29,6 +29,13 @@ pub(super) fn operate(min: f64, max: f64) -> Filter {
 }
 
 #[test]
+fn an_import_names_the_columns_that_it_ignores() {
+    let text = "lot,operate_voltage_v,uncertainty operate_voltage_v\nA,7.5,0.02\n";
+    let found = ignored_columns(&csv::read(text).unwrap());
+    assert_eq!(found, ["lot", "uncertainty operate_voltage_v"]);
+}
+
+#[test]
 fn each_member_of_the_filter_restricts() {
     let file = File::new();
     let _store = filled(&file, 30);

@@ -53,7 +53,7 @@ pub enum Order {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schema(nullable = false, example = "L-1123")]
         lot: Option<String>,
-        /// Name of the recipe of the lot; needs `lot`.
+        /// Name of the recipe of the lot; needs `lot`. Without it, a lot keeps the recipe with which it began.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schema(nullable = false, example = "jzc-22f-012")]
         recipe: Option<String>,

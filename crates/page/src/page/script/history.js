@@ -132,11 +132,16 @@ function showPart(part) {
     pair.append(make("dt", word(key)), make("dd", text));
     return pair;
   }));
-  at("part_values").replaceChildren(...part.measurements.map((it) => {
+  const values = part.measurements.map((it) => {
     const [value, uncertainty] = measured(it.value, it.uncertainty);
     return row(nameOf(it.parameter), String(it.attempt), value, uncertainty,
       unitOf(it.parameter), limitText(it), verdictCell(it.verdict));
-  }));
+  });
+  // A part can fail at a characteristic without a value, such as a coil current over range.
+  const isMeasured = (code) => part.measurements.some((it) => it.parameter === code);
+  const missing = new Set(part.reason_codes.map((it) => it.param).filter((it) => it && !isMeasured(it)));
+  values.push(...Array.from(missing, (it) => row(nameOf(it), NONE, NONE, NONE, unitOf(it), NONE, verdictCell(part.verdict))));
+  at("part_values").replaceChildren(...values);
   showTestBars(part);
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
     row(nameOf(it.parameter), wordOr("line-" + sample.line, sample.line), wordOr("module-" + sample.module, sample.module), sample.channel,
