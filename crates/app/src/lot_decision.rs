@@ -48,7 +48,7 @@ pub fn write(db: &Path, order: &Order, by: &By, about: AboutLot<'_>) -> Result<(
 /// Returns the audit row of an order that a person gives while no run of its lot is under way.
 pub fn audit(order: &Order, by: &By) -> Row {
     Row::Order(OrderRecord {
-        lot: AboutLot::of(order).map(|it| it.lot.to_owned()),
+        lot: None,
         at_us: jiff::Timestamp::now().as_microsecond(),
         who: by.who.clone(),
         role: by.role.clone(),
