@@ -21,8 +21,11 @@ use machine::dut::thermostat::points::Points;
 use rigsim::world::oven::{ChamberValues, SensorValues};
 use std::sync::Arc;
 
-/// Temperature of the chamber at which a batch begins, right after the one before, C.
+/// Temperature of the air at which a batch begins, right after the one before, C; that one went up to the other temperature.
 const START_C: f64 = 45.0;
+const BEFORE_C: f64 = 90.0;
+/// Power of the heater on the way there, 1 = full heater.
+const BEFORE: f64 = 0.2;
 /// Temperature below which a batch ends, C.
 const END_C: f64 = 54.0;
 /// Time at which the mains voltage steps, s.
@@ -125,15 +128,35 @@ impl Rig {
             ambient_c
         };
         let lot = (self.kind, &self.world, self.seed);
-        let noise_seed = self.seed ^ (batch.number << 32);
         Running {
             ambient_c,
-            plant: Plant::new(&self.values, self.sensors, START_C, noise_seed),
+            plant: self.warm(self.seed ^ (batch.number << 32)),
             rack: Rack::new(lot, batch, [parts_c, START_C], ambient_c),
             record: Record::new(0.0, ambient_c),
             work: Work::new(device, false, ambient_c, START_C),
             is_over: false,
         }
+    }
+
+    /// Returns the chamber right after a batch: its walls and insulation have kept some of the heat.
+    fn warm(&self, noise_seed: u64) -> Plant {
+        let mut plant = Plant::new(
+            &self.values,
+            self.sensors,
+            self.values.ambient_c,
+            noise_seed,
+        );
+        let heating = Command {
+            heater: BEFORE,
+            vent: 0.0,
+        };
+        while plant.reference_c() < BEFORE_C {
+            plant.step(heating);
+        }
+        while plant.reference_c() > START_C {
+            plant.step(COOLING);
+        }
+        plant
     }
 
     /// Returns the device with the rates of a batch and the lesson of an earlier one.
