@@ -39,11 +39,7 @@ pub(super) fn check(
         .collect()
 }
 
-fn check_one(
-    record: &CalibrationRecord,
-    certified: Option<&Calibration>,
-    now_us: i64,
-) -> Finding {
+fn check_one(record: &CalibrationRecord, certified: Option<&Calibration>, now_us: i64) -> Finding {
     let stored = serde_json::from_str::<Calibration>(&record.body);
     let name = match &stored {
         Ok(calibration) => match calibration.facts().nominal_v {

@@ -1,7 +1,7 @@
 //! Estimates the switching temperatures of one part together with its lag. The lag of the lot, and the spread of lags
 //! within it, say what to expect of the lag.
 
-use super::fit::{Fit, Expected, Mean, fitted};
+use super::fit::{Expected, Fit, Mean, fitted};
 use super::lot::LotLag;
 use super::{Record, Switching};
 use crate::statistics::median;

@@ -115,8 +115,11 @@ impl Fit {
                 gradient_k: now.per_lag_k_per_s * ln.exp(),
             })
         };
-        let [operate, reset] = [&part.operate, &part.reset]
-            .map(|all| all.iter().map(|it| event(it.first_s)).collect::<Option<_>>());
+        let [operate, reset] = [&part.operate, &part.reset].map(|all| {
+            all.iter()
+                .map(|it| event(it.first_s))
+                .collect::<Option<_>>()
+        });
         let all: [Vec<Event>; 2] = [operate?, reset?];
         (!all.iter().all(Vec::is_empty)).then_some(Self { ln, range, all })
     }

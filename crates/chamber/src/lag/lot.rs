@@ -1,7 +1,7 @@
 //! Lag of a lot, and the spread of lags within it, from parts that switched in passes of two rates.
 
 use super::estimate::scattered;
-use super::fit::{Fit, Expected, LAGS_S, Solution, fitted};
+use super::fit::{Expected, Fit, LAGS_S, Solution, fitted};
 use super::{Filtered, Noise, Record, Switching, Transition};
 use crate::statistics::{mean, median, robust};
 
@@ -119,7 +119,10 @@ impl Spread {
         Self {
             ln,
             u: weights.recip().sqrt(),
-            sd: variance.max(0.0).sqrt().clamp(LAG_SPREAD, MOST * LAG_SPREAD),
+            sd: variance
+                .max(0.0)
+                .sqrt()
+                .clamp(LAG_SPREAD, MOST * LAG_SPREAD),
         }
     }
 
@@ -144,7 +147,10 @@ fn common(record: &Record, parts: &[Switching]) -> Option<f64> {
     let mut best = (0, f64::INFINITY);
     for point in 0..=POINTS {
         let filtered = record.filtered(lag_s(point));
-        let all: Vec<f64> = switching.iter().filter_map(|it| spread(&filtered, it)).collect();
+        let all: Vec<f64> = switching
+            .iter()
+            .filter_map(|it| spread(&filtered, it))
+            .collect();
         let found = median(&all)?;
         if found < best.1 {
             best = (point, found);

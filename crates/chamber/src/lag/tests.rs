@@ -138,10 +138,7 @@ fn one_event_leaves_the_lag_of_the_lot() {
     once.operate.truncate(1);
     once.reset.clear();
     let narrow = estimate(&record, &once, &LAG, &NOISE).unwrap();
-    let wide = LotLag {
-        spread: 0.7,
-        ..LAG
-    };
+    let wide = LotLag { spread: 0.7, ..LAG };
     let wide = estimate(&record, &once, &wide, &NOISE).unwrap();
     for found in [narrow, wide] {
         assert!((found.lag_s - 40.0).abs() < 1e-9, "{found:?}");

@@ -57,13 +57,14 @@ pub struct Outcome {
 }
 
 impl Rig {
-    /// Draws a rig and identifies it at nominal mains.
+    /// Draws a rig and identifies it at the mains of its world.
     ///
     /// # Errors
     /// Fails when the chamber does not respond, or the configuration does not load.
     pub fn new(kind: Kind, world: World, seed: u64) -> anyhow::Result<Self> {
         let (values, sensors) = drawn(Medium::Air, world.ambient_c, seed);
-        let cold = Plant::new(&values, sensors, values.ambient_c, seed);
+        let mut cold = Plant::new(&values, sensors, values.ambient_c, seed);
+        cold.mains = world.mains;
         let device = device(kind)?;
         let windows = device.thermostat.windows(&device.recipe.limits);
         let lesson = Lesson {
@@ -101,7 +102,7 @@ impl Rig {
                 true => self.world.mains_later,
                 false => self.world.mains,
             };
-            let at = || format!("seed {}, second {seconds}", self.seed);
+            let at = || format!("{}, seed {}, second {seconds}", self.world.name, self.seed);
             running.second(&device).with_context(at)?;
             seconds += 1;
         }

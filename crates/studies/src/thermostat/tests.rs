@@ -34,12 +34,8 @@ fn two_passes_find_the_lag_and_every_temperature() {
 #[test]
 fn a_known_lag_saves_a_pass() {
     let rig = rig(Kind::KSD9700);
-    let two = rig
-        .batch(&batch(0, 12, [5.0, 2.0]), None)
-        .unwrap();
-    let one = rig
-        .batch(&batch(1, 12, [5.0, 2.0]), Some(&two))
-        .unwrap();
+    let two = rig.batch(&batch(0, 12, [5.0, 2.0]), None).unwrap();
+    let one = rig.batch(&batch(1, 12, [5.0, 2.0]), Some(&two)).unwrap();
     assert!(
         one.minutes < 0.75 * two.minutes,
         "{} {}",
