@@ -1,10 +1,9 @@
 //! Estimates the switching temperatures of one part together with its lag. The lag of the lot, and the spread of lags
 //! within it, say what to expect of the lag.
 
-use super::fit::{Expected, Fit, Mean, fitted};
+use super::fit::{Mean, fitted};
 use super::lot::LotLag;
 use super::{Record, Switching};
-use crate::statistics::median;
 
 /// Scatter of switchings, and delay of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,9 +67,12 @@ pub fn estimate(
     let expected = lag.expected(noise);
     let events = fitted(record, part, &expected, noise)?;
     let found = events.solved(&expected, noise);
-    let value = |value: f64, variance: f64, gradient_k: f64| {
-        let u_k = (variance + gradient_k * gradient_k * found.variance).sqrt();
-        Value { value, u_k }
+    // Mean and variance of a lag whose logarithm is normal, in units of the lag: a lag may be far above its median, not below.
+    let ratio = (found.variance / 2.0).exp();
+    let (shift, variance_of_lag) = (ratio - 1.0, ratio * ratio * found.variance.exp_m1());
+    let value = |value: f64, variance: f64, gradient_k: f64| Value {
+        value: value + gradient_k * shift,
+        u_k: (variance + gradient_k * gradient_k * variance_of_lag).sqrt(),
     };
     let [operate, reset] = found.means;
     let both = operate.zip(reset);
@@ -85,42 +87,4 @@ pub fn estimate(
         lag_s: noise.lag_s(found.ln),
         range_k: events.range_k(),
     })
-}
-
-/// Largest scatter that [`lot_scatter`] finds, in multiples of the assumed one.
-const MOST: f64 = 5.0;
-/// Rounds in which the scatter settles.
-const ROUNDS: usize = 8;
-
-/// Returns the scatter of switchings, K, that explains how much the passes of the parts of a lot disagree: at least the
-/// assumed one, at most five times that. The median of the parts decides, so that a few defective ones do not count. A
-/// part that switched only once each way has no vote.
-pub fn lot_scatter(record: &Record, parts: &[Switching], lag: &LotLag, assumed: &Noise) -> f64 {
-    let expected = lag.expected(assumed);
-    let parts = parts.iter();
-    let fits: Vec<Fit> = parts
-        .filter_map(|it| fitted(record, it, &expected, assumed))
-        .collect();
-    let settles = |noise: Noise, _| scattered(&fits, &expected, &noise, assumed);
-    (0..ROUNDS).fold(*assumed, settles).scatter_k
-}
-
-/// Returns the noise with the scatter that explains the misfits of parts under the present one.
-pub(super) fn scattered(
-    fits: &[Fit],
-    expected: &Expected,
-    noise: &Noise,
-    assumed: &Noise,
-) -> Noise {
-    // Median of chi squared by the approximation of Wilson and Hilferty.
-    let middle = |freedom: f64| freedom * (1.0 - 2.0 / (9.0 * freedom)).powi(3);
-    let told = fits.iter().filter(|it| it.freedom() > 0);
-    let ratios: Vec<f64> = told
-        .map(|it| it.solved(expected, noise).misfit / middle(it.freedom() as f64))
-        .collect();
-    let found_k = noise.scatter_k * median(&ratios).unwrap_or(0.0).sqrt();
-    Noise {
-        scatter_k: found_k.clamp(assumed.scatter_k, MOST * assumed.scatter_k),
-        ..*assumed
-    }
 }

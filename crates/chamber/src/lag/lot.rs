@@ -1,7 +1,7 @@
 //! Lag of a lot, and the spread of lags within it, from parts that switched in passes of two rates.
 
-use super::estimate::scattered;
 use super::fit::{Expected, Fit, LAGS_S, Solution, fitted};
+use super::scatter::scattered;
 use super::{Filtered, Noise, Record, Switching, Transition};
 use crate::statistics::{mean, median, robust};
 
@@ -129,7 +129,7 @@ impl Spread {
     fn expected(&self) -> Expected {
         Expected {
             ln: self.ln,
-            sd: self.sd.hypot(self.u),
+            sd: self.sd,
         }
     }
 }

@@ -27,10 +27,12 @@ mod estimate;
 mod fit;
 mod lot;
 mod record;
+mod scatter;
 
-pub use estimate::{Estimate, Noise, Value, estimate, lot_scatter};
+pub use estimate::{Estimate, Noise, Value, estimate};
 pub use lot::{LAG_SPREAD, LotLag, lot_lag};
 pub use record::{Filtered, Record, Sample};
+pub use scatter::lot_scatter;
 
 /// A change of a contact, as the polls have seen it.
 #[derive(Debug, Clone, Copy, PartialEq)]
