@@ -66,7 +66,7 @@ fn lot(recipe: &'static str, seed: u64, latency_ms: Option<f64>) -> Lot {
             change(
                 "rig.toml",
                 "estop_reaction_ms = 900",
-                allowed("estop_reaction_ms", 900.0 + 8.0 * it),
+                allowed("estop_reaction_ms", 900.0 + 20.0 * it),
             ),
             change(
                 "rig.toml",
