@@ -199,12 +199,15 @@ pub struct Socket {
     pub select: u8,
 }
 
+/// Difference of the air to ambient for which [`RackCertificate`] states the offsets of sockets, kelvin.
+pub const OFFSETS_AT_K: f64 = 75.0;
+
 /// Certificate of a rack; all zero and empty without one.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RackCertificate {
     /// Mean error of the reference sensor, kelvin.
     pub error_k: f64,
-    /// Temperature of each socket less that of the air, where the air is 75 K above ambient, kelvin.
+    /// Temperature of each socket less that of the air, where the air is [`OFFSETS_AT_K`] above ambient, kelvin.
     pub offsets_k: Vec<f64>,
 }
 
@@ -260,9 +263,12 @@ fn certificate(files: &Files, rig: &Table) -> Result<RackCertificate, ConfigErro
         Ok(it.get::<f64>("reading_c")? - it.get::<f64>("true_c")?)
     };
     let errors: Vec<f64> = points.iter().map(error).collect::<Result<_, _>>()?;
+    let map: Table = file.get("map")?;
+    let scale = OFFSETS_AT_K / map.get::<f64>("excess_k")?;
+    let offsets_k: Vec<f64> = map.get("offset_k")?;
     Ok(RackCertificate {
         error_k: errors.iter().sum::<f64>() / errors.len().max(1) as f64,
-        offsets_k: file.get::<Table>("map")?.get("offset_k")?,
+        offsets_k: offsets_k.into_iter().map(|it| it * scale).collect(),
     })
 }
 

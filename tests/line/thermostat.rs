@@ -270,13 +270,19 @@ fn lots_follow_the_date_and_text_of_the_certificate() {
     let run = "--config config/rigs/thermostat run --lot A --recipe thermostat-ksd9700 --count 1";
     let calibrate = "--config config/rigs/thermostat calibrate --recipe thermostat-ksd9700";
     let said = |line: &str, status| workshop.run(line).with_status(status).stderr.clone();
+    let doctor_differs = || {
+        let said = workshop.run("--config config/rigs/thermostat doctor");
+        said.stdout.contains("from another certificate")
+    };
     assert!(said(run, 3).contains("the calibration ran out at 2025-01-14T00:00:00Z"));
     assert!(said(calibrate, 2).contains("issued: found 2024-01-15T00:00:00Z"));
     let today = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
     workshop.change(rack, "2024-01-15", &today);
     said(calibrate, 0);
     said(calibrate, 0);
+    assert!(!doctor_differs());
     workshop.change(rack, "40.06", "41.56");
+    assert!(doctor_differs());
     assert!(said(run, 3).contains("the certificate differs from the stored one"));
     workshop.change(rack, &today, "2999-01-15");
     assert!(said(calibrate, 2).contains("expected a date that has come"));

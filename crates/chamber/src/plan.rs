@@ -2,7 +2,7 @@
 //! repeat near limits.
 
 use crate::program::{Pass, Window};
-use crate::statistics::median;
+use crate::statistics::robust;
 
 /// Standard deviations on either side of the middle that a narrowed window keeps.
 const KEPT_SD: f64 = 3.0;
@@ -10,8 +10,6 @@ const KEPT_SD: f64 = 3.0;
 const LEAST_HALF_K: f64 = 0.5;
 /// Least number of temperatures that narrow a window.
 const LEAST_SHOWN: usize = 5;
-/// Ratio of the standard deviation of a normal quantity to its median absolute deviation.
-const SD_OF_MAD: f64 = 1.4826;
 
 /// Rates of the passes, K/min.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,9 +107,8 @@ fn spanned(shown_c: &[f64]) -> Option<Window> {
     if shown_c.len() < LEAST_SHOWN {
         return None;
     }
-    let middle_c = median(shown_c)?;
-    let off: Vec<f64> = shown_c.iter().map(|it| (it - middle_c).abs()).collect();
-    let half_k = (KEPT_SD * SD_OF_MAD * median(&off)?).max(LEAST_HALF_K);
+    let (middle_c, sd_k) = robust(shown_c)?;
+    let half_k = (KEPT_SD * sd_k).max(LEAST_HALF_K);
     Some(Window {
         low_c: middle_c - half_k,
         high_c: middle_c + half_k,

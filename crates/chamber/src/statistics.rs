@@ -1,4 +1,7 @@
-//! Median, mean and slope of samples.
+//! Median, mean, robust deviation and slope of samples.
+
+/// Ratio of the standard deviation of a normal quantity to its median absolute deviation.
+const SD_OF_MAD: f64 = 1.4826;
 
 /// Returns the middle value, or the mean of the two middle ones; `None` without values.
 pub fn median(all: &[f64]) -> Option<f64> {
@@ -12,6 +15,14 @@ pub fn median(all: &[f64]) -> Option<f64> {
 /// Returns the mean of values; NaN without values.
 pub fn mean(all: &[f64]) -> f64 {
     all.iter().sum::<f64>() / all.len() as f64
+}
+
+/// Returns the median of values, and their standard deviation by the median of the deviations from it, which a few wild
+/// values do not move; `None` without values.
+pub fn robust(all: &[f64]) -> Option<(f64, f64)> {
+    let middle = median(all)?;
+    let off: Vec<f64> = all.iter().map(|it| (it - middle).abs()).collect();
+    Some((middle, SD_OF_MAD * median(&off)?))
 }
 
 /// Returns the least-squares slope of samples one second apart, per second; NaN for fewer than two.

@@ -51,7 +51,10 @@ pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
     }
     findings.push(host::check_clock());
     let facts = facts.filter(|_| installation.lines.is_some());
-    findings.extend(facts.iter().flat_map(|it| calibration::check(it, now)));
+    let certified = plant.as_ref().ok();
+    let certified = certified.and_then(|it| calibration::of_plant(&files.config, it));
+    let check = |it| calibration::check(it, certified.as_ref(), now);
+    findings.extend(facts.iter().flat_map(check));
     findings.extend(host::check_privileges());
     findings
 }

@@ -73,26 +73,59 @@ impl Record {
     /// Returns the record, filtered by a first-order low-pass with a lag, s.
     pub fn filtered(&self, lag_s: f64) -> Filtered<'_> {
         let lag_s = lag_s.max(1e-3);
-        let mut value = self.parts_c;
-        let mut values_c = Vec::with_capacity(self.readings_c.len());
-        values_c.push(value);
+        let second = Share::of(1.0, lag_s);
+        let mut state = State {
+            celsius: self.parts_c,
+            per_lag_k_per_s: 0.0,
+        };
+        let mut states = Vec::with_capacity(self.readings_c.len());
+        states.push(state);
         for pair in self.readings_c.windows(2) {
-            value = moved(value, [pair[0], pair[1]], lag_s, 1.0);
-            values_c.push(value);
+            state = state.moved([pair[0], pair[1]], &second);
+            states.push(state);
         }
         Filtered {
             record: self,
             lag_s,
-            values_c,
+            states,
         }
     }
 }
 
-/// Returns the low-pass after `share_s` of a second, while its input moves linearly from one reading to the next.
-fn moved(value: f64, [from, to]: [f64; 2], lag_s: f64, share_s: f64) -> f64 {
-    let slope = to - from;
-    let behind = value - from + slope * lag_s;
-    from + slope * (share_s - lag_s) + behind * (-share_s / lag_s).exp()
+/// Part of a second, s, with what remains of the state of a low-pass after it.
+struct Share {
+    s: f64,
+    lag_s: f64,
+    remains: f64,
+}
+
+impl Share {
+    fn of(s: f64, lag_s: f64) -> Self {
+        let remains = (-s / lag_s).exp();
+        Self { s, lag_s, remains }
+    }
+}
+
+/// State of the low-pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct State {
+    celsius: f64,
+    /// Change of the temperature with the lag, K/s: the low-pass of its rate, sign reversed.
+    per_lag_k_per_s: f64,
+}
+
+impl State {
+    /// Returns the state after a part of a second, while the input moves linearly from one reading to the next.
+    fn moved(self, [from, to]: [f64; 2], share: &Share) -> Self {
+        let Share { s, lag_s, remains } = *share;
+        let slope = to - from;
+        let behind = self.celsius - from + slope * lag_s;
+        let turns = self.per_lag_k_per_s + slope + behind * s / (lag_s * lag_s);
+        Self {
+            celsius: from + slope * (s - lag_s) + behind * remains,
+            per_lag_k_per_s: turns * remains - slope,
+        }
+    }
 }
 
 /// A record, filtered with a lag.
@@ -100,7 +133,7 @@ fn moved(value: f64, [from, to]: [f64; 2], lag_s: f64, share_s: f64) -> f64 {
 pub struct Filtered<'a> {
     record: &'a Record,
     lag_s: f64,
-    values_c: Vec<f64>,
+    states: Vec<State>,
 }
 
 /// The filtered record at one instant.
@@ -110,6 +143,8 @@ pub struct Sample {
     pub celsius: f64,
     /// Rate, K/s.
     pub rate_k_per_s: f64,
+    /// Change of the temperature with the lag of the filter, K/s.
+    pub per_lag_k_per_s: f64,
 }
 
 impl Filtered<'_> {
@@ -123,11 +158,13 @@ impl Filtered<'_> {
         let readings = self.record.readings_c.get(second..second + 2)?;
         let ends = [readings[0], readings[1]];
         let share_s = place - place.floor();
-        let celsius = moved(*self.values_c.get(second)?, ends, self.lag_s, share_s);
+        let before = *self.states.get(second)?;
+        let now = before.moved(ends, &Share::of(share_s, self.lag_s));
         let input_c = ends[0] + (ends[1] - ends[0]) * share_s;
         Some(Sample {
-            celsius,
-            rate_k_per_s: (input_c - celsius) / self.lag_s,
+            celsius: now.celsius,
+            rate_k_per_s: (input_c - now.celsius) / self.lag_s,
+            per_lag_k_per_s: now.per_lag_k_per_s,
         })
     }
 }

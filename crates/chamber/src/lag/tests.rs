@@ -51,6 +51,12 @@ const NOISE: Noise = Noise {
     scatter_k: 0.15,
     sensor_lag_s: 0.0,
 };
+const LAG: LotLag = LotLag {
+    seconds: 40.0,
+    u_s: 1.0,
+    spread: LAG_SPREAD,
+    parts: 40,
+};
 const LAGS_S: [f64; 5] = [34.0, 37.0, 40.0, 43.0, 46.0];
 
 fn lot() -> Vec<Switching> {
@@ -76,7 +82,7 @@ fn filtering_with_the_true_lag_gives_the_switching_temperature() {
 
 #[test]
 fn the_lag_of_a_lot_is_the_mean_of_its_parts() {
-    let found = lot_lag(&record(), &lot()).unwrap();
+    let found = lot_lag(&record(), &lot(), &NOISE).unwrap();
     assert!((found.seconds - 40.0).abs() < 1.0, "{found:?}");
 }
 
@@ -86,8 +92,97 @@ fn a_wild_part_does_not_move_the_lag() {
     let mut wild = parts[0].clone();
     wild.operate[1].first_s += 90.0;
     parts.push(wild);
-    let found = lot_lag(&record(), &parts).unwrap();
+    let found = lot_lag(&record(), &parts, &NOISE).unwrap();
     assert!((found.seconds - 40.0).abs() < 1.0, "{found:?}");
+}
+
+/// Returns a lot whose parts have these lags, s.
+fn lot_of(lags_s: &[f64]) -> Vec<Switching> {
+    let one = |(place, lag_s): (usize, &f64)| part(84.0 + 0.1 * place as f64, 64.0, *lag_s);
+    lags_s.iter().enumerate().map(one).collect()
+}
+
+#[test]
+fn a_mixture_of_lags_counts_whole() {
+    let (record, lags_s) = (record(), [20.0, 80.0, 20.0, 80.0, 20.0, 80.0, 20.0]);
+    let parts = lot_of(&lags_s);
+    let lag = lot_lag(&record, &parts, &NOISE).unwrap();
+    assert_eq!(lag.parts, lags_s.len());
+    assert!((0.6..=0.75).contains(&lag.spread), "{lag:?}");
+    assert_eq!(lot_scatter(&record, &parts, &lag, &NOISE), NOISE.scatter_k);
+    for ((place, part), lag_s) in parts.iter().enumerate().zip(lags_s) {
+        let found = estimate(&record, part, &lag, &NOISE).unwrap();
+        let operate = found.operate.unwrap();
+        let off_k = operate.value - 84.0 - 0.1 * place as f64;
+        assert!(off_k.abs() < 0.05 && operate.u_k < 0.4, "{found:?}");
+        assert!((found.lag_s / lag_s - 1.0).abs() < 0.05, "{found:?}");
+    }
+}
+
+#[test]
+fn a_few_slow_parts_widen_no_lot() {
+    let (record, mut lags_s) = (record(), vec![36.0, 38.0, 40.0, 40.0, 42.0, 44.0]);
+    lags_s.push(110.0);
+    let parts = lot_of(&lags_s);
+    let lag = lot_lag(&record, &parts, &NOISE).unwrap();
+    assert_eq!((lag.parts, lag.spread), (6, LAG_SPREAD));
+    let slow = estimate(&record, &parts[6], &lag, &NOISE).unwrap();
+    assert!((90.0..115.0).contains(&slow.lag_s), "{slow:?}");
+    assert!((slow.operate.unwrap().value - 84.6).abs() < 0.3, "{slow:?}");
+}
+
+#[test]
+fn one_event_leaves_the_lag_of_the_lot() {
+    let record = record();
+    let mut once = part(85.0, 65.0, 80.0);
+    once.operate.truncate(1);
+    once.reset.clear();
+    let narrow = estimate(&record, &once, &LAG, &NOISE).unwrap();
+    let wide = LotLag { spread: 0.7, ..LAG };
+    let wide = estimate(&record, &once, &wide, &NOISE).unwrap();
+    for found in [narrow, wide] {
+        assert!((found.lag_s - 40.0).abs() < 1e-9, "{found:?}");
+    }
+    let [narrow, wide] = [narrow, wide].map(|it| it.operate.unwrap());
+    assert!(wide.u_k > 4.0 * narrow.u_k, "{narrow:?} {wide:?}");
+    assert!((wide.value - 85.0).abs() < 2.0 * wide.u_k, "{wide:?}");
+}
+
+#[test]
+fn events_of_nonsense_leave_finite_figures() {
+    let record = record();
+    let at = |all: &[f64]| all.iter().map(|it| Transition::at(*it)).collect();
+    let all: [(&[f64], &[f64]); 4] = [
+        (&[500.0, 300.0], &[900.0, 1000.0]),
+        (&[10.0, 2600.0], &[]),
+        (&[100.0, 100.0], &[100.0, 100.0]),
+        (&[0.0], &[0.0, 2600.0]),
+    ];
+    for (operate, reset) in all {
+        let part = Switching {
+            operate: at(operate),
+            reset: at(reset),
+        };
+        let found = estimate(&record, &part, &LAG, &NOISE).unwrap();
+        let operate = found.operate.unwrap();
+        assert!(operate.value.is_finite() && operate.u_k.is_finite());
+        assert!((1.0..=1000.0).contains(&found.lag_s), "{found:?}");
+        lot_lag(&record, &[part], &NOISE);
+    }
+}
+
+#[test]
+fn the_change_with_the_lag_is_the_derivative() {
+    let record = record();
+    for lag_s in [0.5, 3.0, 40.0, 300.0] {
+        let [below, at, above] = [0.999, 1.0, 1.001].map(|it| record.filtered(it * lag_s));
+        for instant_s in [100.3, 555.5, 1300.0, 2600.7] {
+            let [below, at, above] = [&below, &at, &above].map(|it| it.at(instant_s).unwrap());
+            let expected = (above.celsius - below.celsius) / (0.002 * lag_s);
+            let found = at.per_lag_k_per_s;
+            assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+        }
+    }
 }
 
 #[test]
@@ -97,13 +192,13 @@ fn one_pass_tells_no_lag() {
         part.operate.truncate(1);
         part.reset.truncate(1);
     }
-    assert_eq!(lot_lag(&record(), &once), None);
+    assert_eq!(lot_lag(&record(), &once, &NOISE), None);
 }
 
 #[test]
 fn two_passes_take_out_the_lag_of_each_part() {
     let (record, parts) = (record(), lot());
-    let lag = lot_lag(&record, &parts).unwrap();
+    let lag = lot_lag(&record, &parts, &NOISE).unwrap();
     let noise = Noise {
         scatter_k: 0.05,
         sensor_lag_s: 0.0,
@@ -129,15 +224,10 @@ fn two_passes_take_out_the_lag_of_each_part() {
 #[test]
 fn one_pass_leaves_the_spread_of_lags_in_the_uncertainty() {
     let (record, parts) = (record(), lot());
-    let lag = LotLag {
-        seconds: 40.0,
-        u_s: 1.0,
-        parts: 80,
-    };
     let mut once = parts[4].clone();
     once.operate.truncate(1);
     once.reset.truncate(1);
-    let found = estimate(&record, &once, &lag, &NOISE).unwrap();
+    let found = estimate(&record, &once, &LAG, &NOISE).unwrap();
     let rate = 5.0 / 60.0;
     let expected = (0.15f64.powi(2) + rate * rate * (0.25 + 37.0)).sqrt();
     assert!(
@@ -149,7 +239,7 @@ fn one_pass_leaves_the_spread_of_lags_in_the_uncertainty() {
 #[test]
 fn a_part_that_never_resets_has_no_reset_temperature() {
     let (record, parts) = (record(), lot());
-    let lag = lot_lag(&record, &parts).unwrap();
+    let lag = lot_lag(&record, &parts, &NOISE).unwrap();
     let mut stays = parts[2].clone();
     stays.reset.clear();
     stays.operate.truncate(1);
@@ -168,19 +258,14 @@ fn an_event_outside_the_record_gives_nothing() {
         operate: vec![Transition::at(9e9)],
         reset: Vec::new(),
     };
-    let lag = LotLag {
-        seconds: 40.0,
-        u_s: 1.0,
-        parts: 80,
-    };
-    assert_eq!(estimate(&record, &late, &lag, &NOISE), None);
+    assert_eq!(estimate(&record, &late, &LAG, &NOISE), None);
     assert_eq!(record.filtered(40.0).at(f64::NAN), None);
 }
 
 #[test]
 fn passes_that_disagree_raise_the_scatter_of_the_lot() {
     let (record, mut parts) = (record(), lot());
-    let lag = lot_lag(&record, &parts).unwrap();
+    let lag = lot_lag(&record, &parts, &NOISE).unwrap();
     assert_eq!(lot_scatter(&record, &parts, &lag, &NOISE), NOISE.scatter_k);
     assert_eq!(lot_scatter(&record, &[], &lag, &NOISE), NOISE.scatter_k);
     // 8 s at 5 K/min are 0.7 K, and at 2 K/min 0.3 K.
@@ -195,7 +280,7 @@ fn passes_that_disagree_raise_the_scatter_of_the_lot() {
 #[test]
 fn the_lag_of_the_sensor_widens_the_spread_of_lags() {
     let (record, parts) = (record(), lot());
-    let lag = lot_lag(&record, &parts).unwrap();
+    let lag = lot_lag(&record, &parts, &NOISE).unwrap();
     let mut once = parts[2].clone();
     once.operate.truncate(1);
     once.reset.truncate(1);
@@ -218,7 +303,7 @@ fn the_lag_of_the_sensor_widens_the_spread_of_lags() {
 #[test]
 fn a_part_outside_the_record_leaves_the_others_their_spread() {
     let (record, mut parts) = (record(), lot());
-    let expected = lot_lag(&record, &parts).unwrap();
+    let expected = lot_lag(&record, &parts, &NOISE).unwrap();
     let mut wild = parts[0].clone();
     wild.operate[1].first_s += 90.0;
     wild.reset.clear();
@@ -227,7 +312,7 @@ fn a_part_outside_the_record_leaves_the_others_their_spread() {
     late.reset.clear();
     parts.insert(0, wild);
     parts.insert(0, late);
-    let found = lot_lag(&record, &parts).unwrap();
+    let found = lot_lag(&record, &parts, &NOISE).unwrap();
     assert_eq!(found.parts, expected.parts);
     assert!((found.seconds - expected.seconds).abs() < 1e-6, "{found:?}");
 }
@@ -289,8 +374,7 @@ fn a_part_that_switches_in_a_gap_has_no_estimate() {
     let second = part.operate[0].first_s as i32;
     let lag = LotLag {
         seconds: 39.0,
-        u_s: 1.0,
-        parts: 80,
+        ..LAG
     };
     let short = record_without(second..second + 3);
     let long = record_without(second..second + 4);

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | sensor broken | a reading is missing |
 //! | sensor jump | a reading moves by more than 3 K in a second |
-//! | sensors differ | control and reference are apart by more than 1.0 K + 0.1 min × rate for 10 s |
+//! | sensors differ | control and reference are apart by more than 1.0 K + 0.1 min × rate for 10 s; rate of the set point, or of one towards the other |
 //! | sensor stuck | a reading changes by less than 0.02 K in 60 s above 30 % power |
 //! | energy balance | the slope differs from the expected one by more than half for 60 s: open heater, low mains, door |
 //! | heat without command | the chamber warms by more than 0.5 K/min without power for 60 s: power unit shorted |

@@ -57,6 +57,25 @@ impl Run {
 fn nothing(_: &mut Second, _: &mut Command) {}
 
 #[test]
+fn a_warm_chamber_that_loses_little_raises_no_trouble() {
+    for loss in [0.7, 1.0, 1.6] {
+        let mut run = Run::at(60.0);
+        let chamber = identified();
+        let loss_per_k = loss * chamber.loss_per_k;
+        let chamber = Identified {
+            loss_per_k,
+            ..chamber
+        };
+        run.watch = Watch::new(&chamber);
+        run.controller = Controller::usual(&chamber);
+        for (end_c, rate_k_per_min) in [(95.0, 5.0), (80.0, 10.0), (95.0, 5.0), (85.0, 2.0)] {
+            run.ramp.head_for(end_c, rate_k_per_min);
+            assert_eq!(run.go(600, nothing), None, "{loss} {end_c}");
+        }
+    }
+}
+
+#[test]
 fn a_batch_without_fault_raises_no_trouble() {
     for mains in [0.85, 1.0, 1.15] {
         let mut run = Run::at(AMBIENT_C);

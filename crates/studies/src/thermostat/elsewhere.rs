@@ -1,13 +1,13 @@
 //! Independence of rate and controller, and other worlds.
 
 use super::rack::Batch;
-use super::rig::{Known, Outcome, Rig};
+use super::rig::{Outcome, Rig};
 use super::score::{Quantity, coverage_pct, mean_k, misses, rms_k, u_k};
 use super::world::{self, Kind, OTHERS, World};
 use super::{FEW, LEAST_COVERAGE, Scope, batch};
-use crate::controllers::contender::{Contender, DEFAULT};
 use crate::figure::{Bar, Figure, mean};
 use crate::pool::{self, LOTS_AT_ONCE};
+use machine::dut::thermostat::recipe::Control;
 
 /// Bar of the difference of mean results between two rates, and between two controllers, K.
 const RATE_K: f64 = 0.1;
@@ -16,29 +16,22 @@ const CONTROLLER_K: f64 = 0.05;
 /// Compares the results of the same parts between rates, and between controllers.
 ///
 /// # Errors
-/// Fails when a chamber does not respond, a batch does not end, or its passes show no lag.
+/// Fails when a chamber does not respond, or the machine ends a batch early.
 pub fn independence(kind: Kind, scope: &Scope) -> anyhow::Result<Vec<Figure>> {
     let (few, sockets) = (scope.of(FEW), scope.sockets);
     let seeds: Vec<u64> = (1..=few).collect();
     let found = pool::map(&seeds, LOTS_AT_ONCE, |seed| {
         let rig = Rig::new(kind, world::DEFAULT, *seed)?;
-        let usual = batch(0, sockets, &[5.0, 2.0], 2.0);
-        let two = |name| {
-            let contender = Contender::named(name);
-            rig.batch(
-                &Batch {
-                    contender,
-                    ..usual.clone()
-                },
-                Known::RECIPE,
-            )
+        let two = |control| {
+            let usual = batch(0, sockets, [5.0, 2.0]);
+            rig.batch(&Batch { control, ..usual }, None)
         };
         let (pid, fuzzy, scheduled) = (
-            two(DEFAULT)?,
-            two("fuzzy furnace + FF")?,
-            two("fuzzy-PID even + FF")?,
+            two(Control::Pid)?,
+            two(Control::Fuzzy)?,
+            two(Control::FuzzyPid)?,
         );
-        let one = |rate| rig.batch(&batch(1, sockets, &[5.0, 2.0], rate), pid.known);
+        let one = |rate| rig.batch(&batch(1, sockets, [5.0, rate]), Some(&pid));
         let (fast, slow) = (one(3.0)?, one(1.0)?);
         let off = |a: &Outcome, b: &Outcome| {
             Quantity::ALL.map(|quantity| {
@@ -81,8 +74,8 @@ pub fn worlds(kind: Kind, scope: &Scope) -> anyhow::Result<Vec<Figure>> {
         .collect();
     let found = pool::map(&all, LOTS_AT_ONCE, |(world, seed)| {
         let rig = Rig::new(kind, *world, *seed)?;
-        let two = rig.batch(&batch(0, sockets, &[5.0, 2.0], 2.0), Known::RECIPE)?;
-        let one = rig.batch(&batch(1, sockets, &[5.0, 2.0], 2.0), two.known)?;
+        let two = rig.batch(&batch(0, sockets, [5.0, 2.0]), None)?;
+        let one = rig.batch(&batch(1, sockets, [5.0, 2.0]), Some(&two))?;
         Ok([two, one])
     })?;
     let mut figures = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! | section | shows | runs |
 //! |---|---|---|
-//! | `accuracy` | errors, coverage, minutes, parts per hour | control and estimates on chamber and rack |
+//! | `accuracy` | errors, coverage, minutes, parts per hour | passes, control and judgement of the program on chamber and rack |
 //! | `independence` | results at other rates and with other controllers | the same |
 //! | `worlds` | coverage in other worlds | the same |
 //! | `control` | tracking, excess, slope of a referee test | the controller on the chamber |
@@ -30,13 +30,12 @@ mod world;
 
 use super::chart::Chart;
 use super::controllers;
-use super::controllers::contender::{Contender, DEFAULT};
 use super::curves::Curves;
 use super::figure::Figure;
 use super::output::Report;
-use chamber::plan::Strategy;
 use clap::ValueEnum;
 use lots::BARS;
+use machine::dut::thermostat::recipe::Control;
 use rack::Batch;
 
 /// Number of seeds in other worlds, and with other numbers of sockets.
@@ -93,7 +92,7 @@ impl Scope {
 /// Runs the sections; returns the report, and the first batch of each kind as SVG.
 ///
 /// # Errors
-/// Fails when a chamber does not respond, a batch does not end, its passes show no lag, or the rig cannot be built.
+/// Fails when a chamber does not respond, the machine ends a batch early, or the rig cannot be built.
 pub fn study(scope: &Scope) -> anyhow::Result<(Report, String)> {
     let (mut groups, mut curves, mut bars) = (Vec::new(), Vec::new(), Vec::new());
     for kind in &BARS {
@@ -151,16 +150,13 @@ fn others(scope: &Scope) -> anyhow::Result<Vec<Vec<Figure>>> {
     Ok(groups)
 }
 
-/// Returns a batch with the default controller and these rates, K/min, for a learning batch and for a later one.
-fn batch(number: u64, sockets: usize, learning: &[f64], known: f64) -> Batch {
+/// Returns a batch with the usual controller and these rates, K/min: of the first pass of a batch that measures the lag, and
+/// of the other passes.
+fn batch(number: u64, sockets: usize, rates: [f64; 2]) -> Batch {
     Batch {
         number,
         sockets,
-        strategy: Strategy {
-            learning: learning.to_vec(),
-            known: vec![known],
-            ..Strategy::usual()
-        },
-        contender: Contender::named(DEFAULT),
+        rates,
+        control: Control::Pid,
     }
 }

@@ -1,9 +1,10 @@
 //! Model of parts in their sockets: two lags in series, switching temperatures that scatter, polled contacts.
 
-use super::world::Kind;
-use crate::controllers::contender::Contender;
+use super::world::{Kind, World};
 use chamber::lag::{Switching, Transition};
-use chamber::plan::Strategy;
+use chamber::program::Waiting;
+use machine::dut::thermostat::measure::{Events, Shown};
+use machine::dut::thermostat::recipe::Control;
 use rigsim::world::draw::{Draw, Subject};
 use rigsim::world::oven::{Delay, Lag};
 
@@ -14,8 +15,8 @@ const DIFFERENTIAL: [f64; 2] = [20.0, 2.0];
 /// Spread of the lags within a lot, one standard deviation as a share.
 const LAG_SPREAD: f64 = 0.15;
 /// Offset of a socket that the map leaves, one standard deviation, K, at 75 K above the room.
-const MAP_RESIDUAL_K: f64 = 0.10;
-const MAP_EXCESS_K: f64 = 75.0;
+pub const MAP_RESIDUAL_K: f64 = 0.10;
+pub const MAP_EXCESS_K: f64 = 75.0;
 /// Delay of the air from the fan to the sockets, s.
 const AIR_DELAY_S: f64 = 1.0;
 /// Time between two polls of the contacts, s.
@@ -25,26 +26,26 @@ const STEP_S: f64 = 0.1;
 
 /// A part with its true values.
 #[derive(Debug, Clone)]
-pub struct Part {
+struct Part {
     /// Operate temperature without scatter, C.
-    pub operate_c: f64,
+    operate_c: f64,
     /// Reset temperature without scatter, C.
-    pub reset_c: f64,
+    reset_c: f64,
     offset: f64,
     lags: [Lag; 2],
     scatter_k: f64,
     next_c: f64,
     /// True while the contact is operated.
-    pub operated: bool,
+    operated: bool,
     /// Switchings, as the polls have seen them.
-    pub seen: Switching,
+    seen: Switching,
 }
 
 /// A loaded rack.
 #[derive(Debug, Clone)]
 pub struct Rack {
     /// Parts by socket.
-    pub parts: Vec<Part>,
+    parts: Vec<Part>,
     delay: Delay,
     ambient_c: f64,
     now_s: f64,
@@ -53,21 +54,27 @@ pub struct Rack {
 }
 
 impl Rack {
-    /// Fills the rack with a batch of a lot; parts and air start at a temperature each, C.
-    pub fn new(lot: &Lot, batch: &Batch, [parts_c, air_c]: [f64; 2], ambient_c: f64) -> Self {
-        let (number, seed) = (batch.number, lot.seed);
+    /// Fills the rack with a batch of a lot: a kind in a world, and the seed of rig and lot. Parts and air start at a
+    /// temperature each, C.
+    pub fn new(
+        (kind, world, seed): (Kind, &World, u64),
+        batch: &Batch,
+        [parts_c, air_c]: [f64; 2],
+        ambient_c: f64,
+    ) -> Self {
+        let number = batch.number;
         let mut draw = Draw::new(seed, Subject::LotPart, number);
         let mut map = Draw::new(seed, Subject::Rig, 2);
         let part = |place: usize| {
             let operate_c = draw.normal(OPERATE[0], OPERATE[1]);
-            let lag = lot.lag[place % 2] * draw.normal(1.0, LAG_SPREAD).max(0.3);
+            let lag = world.lag[place % 2] * draw.normal(1.0, LAG_SPREAD).max(0.3);
             Part {
                 operate_c,
                 reset_c: operate_c - draw.normal(DIFFERENTIAL[0], DIFFERENTIAL[1]),
                 offset: map.normal(0.0, MAP_RESIDUAL_K) / MAP_EXCESS_K,
-                lags: lot.kind.lags_s.map(|it| Lag::new(it * lag, parts_c)),
-                scatter_k: lot.scatter_k,
-                next_c: draw.normal(operate_c, lot.scatter_k),
+                lags: kind.lags_s.map(|it| Lag::new(it * lag, parts_c)),
+                scatter_k: world.scatter_k,
+                next_c: draw.normal(operate_c, world.scatter_k),
                 operated: false,
                 seen: Switching::default(),
             }
@@ -80,6 +87,32 @@ impl Rack {
             due_s: STEP_S,
             draw: Draw::new(seed, Subject::LotOperations, number),
         }
+    }
+
+    /// Returns what the contacts have shown.
+    pub fn shown(&self) -> Vec<Shown> {
+        let one = |(socket, part): (u16, &Part)| Shown {
+            socket,
+            events: Events {
+                switching: part.seen.clone(),
+                stray: 0,
+            },
+        };
+        (1..).zip(&self.parts).map(one).collect()
+    }
+
+    /// Counts the parts that have yet to switch.
+    pub fn waiting(&self) -> Waiting {
+        let operated = self.parts.iter().filter(|it| it.operated).count();
+        Waiting {
+            operate: self.parts.len() - operated,
+            reset: operated,
+        }
+    }
+
+    /// Yields the true operate and reset temperature of each part, C.
+    pub fn truths(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.parts.iter().map(|it| [it.operate_c, it.reset_c])
     }
 
     /// Advances the parts by a part of a second, s, in which the air goes to `air_c`.
@@ -130,28 +163,15 @@ impl Part {
     }
 }
 
-/// A lot on a rig.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lot {
-    /// Kind of part.
-    pub kind: Kind,
-    /// Ratio of the lag to that of the default world, in every other socket.
-    pub lag: [f64; 2],
-    /// Scatter of a switching from cycle to cycle, K.
-    pub scatter_k: f64,
-    /// Seed of rig and lot.
-    pub seed: u64,
-}
-
 /// A batch of a lot, all sockets filled.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Batch {
     /// Number of the batch in its lot, from 0.
     pub number: u64,
     /// Number of sockets.
     pub sockets: usize,
-    /// Passes.
-    pub strategy: Strategy,
+    /// Rate of the first pass of a batch that measures the lag, and of the other passes, K/min.
+    pub rates: [f64; 2],
     /// Controller of the chamber.
-    pub contender: Contender,
+    pub control: Control,
 }

@@ -1,35 +1,33 @@
-//! A rig of the study: one drawn chamber, its identification, and batches that run through it.
+//! A rig of the study: one drawn chamber, its identification, and batches that the machine's own code runs through it.
 
-use super::rack::{Batch, Lot, Part, Rack};
-use super::world::{Kind, SCATTER_K, World};
-use crate::controllers::plant::{Medium, Plant, drawn};
+use super::rack::{Batch, MAP_EXCESS_K, MAP_RESIDUAL_K, Rack};
+use super::world::{Kind, World};
+use crate::controllers::plant::{CHAIN_K, Medium, Plant, drawn};
 use anyhow::Context;
-use chamber::control::Controller;
-use chamber::lag::{Estimate, LotLag, Noise, Record, Switching, estimate, lot_lag, lot_scatter};
-use chamber::plan::narrowed;
-use chamber::program::{Phase, Program, Waiting, Window};
-use chamber::tune::Identified;
+use chamber::control::split_range::Command;
+use chamber::lag::Record;
+use config::{Folder, Plant as Configuration, load_recipe};
+use machine::dut::batch::{BatchOrder, SocketResult};
+use machine::dut::device::Made;
+use machine::dut::recipe::DeviceRecipe;
+use machine::dut::record::Own;
+use machine::dut::thermostat::Device;
+use machine::dut::thermostat::certificate::{
+    Calibration, Certificate, Chain, ChainPoint, SocketMap,
+};
+use machine::dut::thermostat::device::Lesson;
+use machine::dut::thermostat::measure::{Recorded, SCATTER_K, Seen, Shown, Work, judged};
+use machine::dut::thermostat::points::Points;
 use rigsim::world::oven::{ChamberValues, SensorValues};
+use std::sync::Arc;
 
-/// Temperature of the chamber at which a batch begins, right after the one before, C.
+/// Temperature of the air at which a batch begins, right after the one before, C; that one went up to the other temperature.
 const START_C: f64 = 45.0;
+const BEFORE_C: f64 = 90.0;
+/// Power of the heater on the way there, 1 = full heater.
+const BEFORE: f64 = 0.2;
 /// Temperature below which a batch ends, C.
 const END_C: f64 = 54.0;
-/// Temperature for which the set point heads after the last pass, C.
-const UNLOAD_C: f64 = 40.0;
-/// Switching temperatures that the recipe expects, C.
-pub const EXPECTED: [Window; 2] = [
-    Window {
-        low_c: 80.0,
-        high_c: 90.0,
-    },
-    Window {
-        low_c: 57.0,
-        high_c: 73.0,
-    },
-];
-/// Lag and delay of the reference sensor that the recipe of an air chamber states, s.
-const SENSOR_LAG_S: f64 = 8.0;
 /// Time at which the mains voltage steps, s.
 const MAINS_STEP_S: usize = 900;
 /// Longest batch, s.
@@ -42,208 +40,237 @@ pub struct Rig {
     seed: u64,
     values: ChamberValues,
     sensors: [SensorValues; 2],
-    figures: Identified,
-}
-
-/// What the controller knows about the lot before a batch.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Known {
-    /// Lag of the lot; `None` until a batch has shown it.
-    pub lag: Option<LotLag>,
-    /// Windows of operate and reset temperatures.
-    pub windows: [Window; 2],
-    /// Scatter of switchings that the lot has shown, K.
-    pub scatter_k: f64,
-}
-
-impl Known {
-    /// Knowledge from the recipe alone.
-    pub const RECIPE: Self = Self {
-        lag: None,
-        windows: EXPECTED,
-        scatter_k: SCATTER_K,
-    };
+    /// The recipe on a rig that knows its chamber and nothing of the lot.
+    device: Device,
 }
 
 /// A batch that has run.
 pub struct Outcome {
-    /// Estimates and true operate and reset temperatures, C, by socket.
-    pub parts: Vec<(Estimate, [f64; 2])>,
-    /// Temperature of the room, C.
-    pub ambient_c: f64,
+    /// Results, and true operate and reset temperatures, C, by socket.
+    pub parts: Vec<(SocketResult, [f64; 2])>,
     /// Duration without loading, min.
     pub minutes: f64,
-    /// What the controller knows before the next batch of the lot.
-    pub known: Known,
+    /// What the machine knows before the next batch of the lot.
+    pub lesson: Arc<Lesson>,
     /// Time (min) and reading of the reference sensor (C), every ten seconds.
     pub curve: Vec<[f64; 2]>,
 }
 
-/// A batch under way.
-struct Running {
-    plant: Plant,
-    rack: Rack,
-    record: Record,
-    program: Program,
-    controller: Controller,
-    lag_s: f64,
-}
-
-impl Running {
-    fn second(&mut self) {
-        self.record.push(self.plant.reference_c());
-        let seen = self.plant.seen();
-        let before = self.program.pass();
-        let set = self.program.step(seen.measured_c, waiting(&self.rack));
-        if self.program.pass() > before {
-            let [operate, reset] = shown(&self.record, &self.rack, self.lag_s);
-            self.program.narrow(operate, reset, self.lag_s);
-        }
-        let command = self.controller.step(&set, &seen);
-        let rack = &mut self.rack;
-        self.plant
-            .step_with(command, |dt_s, now| rack.step(dt_s, now.air_c));
-    }
-
-    fn is_over(&self) -> bool {
-        self.program.phase() == Phase::Cool && self.plant.reference_c() <= END_C
-    }
-}
-
 impl Rig {
-    /// Draws a rig and identifies it at nominal mains.
+    /// Draws a rig and identifies it at the mains of its world.
     ///
     /// # Errors
-    /// Fails when the chamber does not respond.
+    /// Fails when the chamber does not respond, or the configuration does not load.
     pub fn new(kind: Kind, world: World, seed: u64) -> anyhow::Result<Self> {
         let (values, sensors) = drawn(Medium::Air, world.ambient_c, seed);
-        let cold = Plant::new(&values, sensors, values.ambient_c, seed);
-        let figures = cold.identify(Medium::Air)?;
+        let mut cold = Plant::new(&values, sensors, values.ambient_c, seed);
+        cold.mains = world.mains;
+        let device = device(kind)?;
+        let windows = device.thermostat.windows(&device.recipe.limits);
+        let lesson = Lesson {
+            batch: 0,
+            ambient_c: values.ambient_c,
+            chamber: cold.identify(Medium::Air)?,
+            lag: None,
+            windows: windows.context("a recipe with windows")?,
+            scatter_k: SCATTER_K,
+        };
         Ok(Self {
             kind,
             world,
             seed,
             values,
             sensors,
-            figures,
+            device: Device {
+                lesson: Some(Arc::new(lesson)),
+                ..device
+            },
         })
     }
 
-    /// Runs a batch of the lot.
+    /// Runs a batch of the lot: its first one, or the one after `earlier`.
     ///
     /// # Errors
-    /// Fails when the passes show no lag, or a part has no event.
-    pub fn batch(&self, batch: &Batch, known: Known) -> anyhow::Result<Outcome> {
-        let mut running = self.started(batch, known);
+    /// Fails when the machine ends the batch early, or learns nothing.
+    pub fn batch(&self, batch: &Batch, earlier: Option<&Outcome>) -> anyhow::Result<Outcome> {
+        let device = self.device(batch, earlier);
+        let mut running = self.started(&device, batch);
         let mut seconds = 0;
-        while !running.is_over() {
-            anyhow::ensure!(
-                seconds < LONGEST_S,
-                "seed {}: a batch does not end",
-                self.seed
-            );
-            let later = seconds >= MAINS_STEP_S;
-            running.plant.mains = if later {
-                self.world.mains_later
-            } else {
-                self.world.mains
+        while !running.is_over || running.plant.reference_c() > END_C {
+            anyhow::ensure!(seconds < LONGEST_S, "seed {}: no end", self.seed);
+            running.plant.mains = match seconds >= MAINS_STEP_S {
+                true => self.world.mains_later,
+                false => self.world.mains,
             };
-            running.second();
+            let at = || format!("{}, seed {}, second {seconds}", self.world.name, self.seed);
+            running.second(&device).with_context(at)?;
             seconds += 1;
         }
-        running.record.push(running.plant.reference_c());
-        self.outcome(&running, known, seconds)
+        let results = running.judged(&device, batch.number);
+        let lesson = results.first().and_then(|it| match &it.record.own {
+            Own::Thermostat(lesson) => Some(Arc::clone(lesson)),
+            Own::Nothing | Own::EmRelay(_) | Own::Ssr(_) => None,
+        });
+        let plain = running.record.filtered(0.0);
+        let at = |second: usize| Some([second as f64 / 60.0, plain.at(second as f64)?.celsius]);
+        Ok(Outcome {
+            parts: results.into_iter().zip(running.rack.truths()).collect(),
+            minutes: seconds as f64 / 60.0,
+            lesson: lesson.context("a batch without parts")?,
+            curve: (0..seconds).step_by(10).filter_map(at).collect(),
+        })
     }
 
-    fn started(&self, batch: &Batch, known: Known) -> Running {
+    fn started(&self, device: &Device, batch: &Batch) -> Running {
         let ambient_c = self.values.ambient_c;
         let parts_c = if self.world.warm_parts {
             START_C
         } else {
             ambient_c
         };
-        let noise_seed = self.seed ^ (batch.number << 32);
-        let lag_s = known.lag.map_or(self.kind.recipe_lag_s(), |it| it.seconds);
-        let [operate, reset] = known.windows;
-        let knows = known.lag.is_some();
-        let passes = batch
-            .strategy
-            .passes(usize::from(knows), knows, operate, reset);
-        let lot = Lot {
-            kind: self.kind,
-            lag: self.world.lag,
-            scatter_k: self.world.scatter_k,
-            seed: self.seed,
-        };
+        let lot = (self.kind, &self.world, self.seed);
         Running {
-            plant: Plant::new(&self.values, self.sensors, START_C, noise_seed),
-            rack: Rack::new(&lot, batch, [parts_c, START_C], ambient_c),
+            ambient_c,
+            plant: self.warm(self.seed ^ (batch.number << 32)),
+            rack: Rack::new(lot, batch, [parts_c, START_C], ambient_c),
             record: Record::new(0.0, ambient_c),
-            program: Program::new(START_C, passes, lag_s, UNLOAD_C),
-            controller: batch.contender.controller(&self.figures),
-            lag_s,
+            work: Work::new(device, false, ambient_c, START_C),
+            is_over: false,
         }
     }
 
-    fn outcome(&self, ran: &Running, known: Known, seconds: usize) -> anyhow::Result<Outcome> {
-        let Running { record, rack, .. } = ran;
-        let switching: Vec<Switching> = rack.parts.iter().map(|it| it.seen.clone()).collect();
-        let lag = lot_lag(record, &switching).or(known.lag);
-        let lag = lag.with_context(|| format!("seed {}: the passes tell no lag", self.seed))?;
-        let assumed = Noise {
-            scatter_k: known.scatter_k,
-            sensor_lag_s: SENSOR_LAG_S,
+    /// Returns the chamber right after a batch: its walls and insulation have kept some of the heat.
+    fn warm(&self, noise_seed: u64) -> Plant {
+        let mut plant = Plant::new(
+            &self.values,
+            self.sensors,
+            self.values.ambient_c,
+            noise_seed,
+        );
+        let heating = Command {
+            heater: BEFORE,
+            vent: 0.0,
         };
-        let scatter_k = lot_scatter(record, &switching, &lag, &assumed);
-        let noise = Noise {
-            scatter_k,
-            ..assumed
-        };
-        let one = |part: &Part| {
-            let found = estimate(record, &part.seen, &lag, &noise);
-            let found =
-                found.with_context(|| format!("seed {}: a part without event", self.seed))?;
-            Ok((found, [part.operate_c, part.reset_c]))
-        };
-        let parts = rack.parts.iter().map(one).collect::<anyhow::Result<_>>()?;
-        let plain = record.filtered(0.0);
-        let at = |second: usize| Some([second as f64 / 60.0, plain.at(second as f64)?.celsius]);
-        Ok(Outcome {
-            parts,
-            ambient_c: self.values.ambient_c,
-            minutes: seconds as f64 / 60.0,
-            known: Known {
-                lag: Some(lag),
-                windows: shown(record, rack, lag.seconds),
-                scatter_k,
-            },
-            curve: (0..seconds).step_by(10).filter_map(at).collect(),
-        })
+        while plant.reference_c() < BEFORE_C {
+            plant.step(heating);
+        }
+        while plant.reference_c() > START_C {
+            plant.step(COOLING);
+        }
+        plant
+    }
+
+    /// Returns the device with the rates of a batch and the lesson of an earlier one.
+    fn device(&self, batch: &Batch, earlier: Option<&Outcome>) -> Device {
+        let mut device = self.device.clone();
+        let test = &mut Arc::make_mut(&mut device.thermostat).test;
+        [test.learning_k_per_min, test.rate_k_per_min] = batch.rates;
+        test.control = batch.control;
+        if let Some(earlier) = earlier {
+            device.lesson = Some(Arc::clone(&earlier.lesson));
+        }
+        device
     }
 }
 
-fn waiting(rack: &Rack) -> Waiting {
-    let operated = rack.parts.iter().filter(|it| it.operated).count();
-    Waiting {
-        operate: rack.parts.len() - operated,
-        reset: operated,
+/// Command after the last pass, as the machine cools its rack.
+const COOLING: Command = Command {
+    heater: 0.0,
+    vent: 1.0,
+};
+
+/// A batch under way.
+struct Running {
+    ambient_c: f64,
+    plant: Plant,
+    rack: Rack,
+    record: Record,
+    work: Work,
+    /// True after the last pass, while the chamber cools.
+    is_over: bool,
+}
+
+impl Running {
+    /// Runs a second.
+    fn second(&mut self, device: &Device) -> anyhow::Result<()> {
+        self.record.push(self.plant.reference_c());
+        let command = match self.is_over {
+            true => None,
+            false => self.passes(device)?,
+        };
+        self.is_over = command.is_none();
+        let rack = &mut self.rack;
+        self.plant
+            .step_with(command.unwrap_or(COOLING), |dt_s, now| {
+                rack.step(dt_s, now.air_c);
+            });
+        Ok(())
+    }
+
+    fn passes(&mut self, device: &Device) -> anyhow::Result<Option<Command>> {
+        let seen = Seen {
+            control_c: Some(self.plant.seen().measured_c),
+            reference_c: Some(self.plant.reference_c()),
+            ambient_c: self.ambient_c,
+            waiting: self.rack.waiting(),
+        };
+        let shown: &dyn Fn() -> Vec<Shown> = &|| self.rack.shown();
+        let next = self.work.step(device, None, &seen, (&self.record, shown));
+        next.map_err(|it| anyhow::anyhow!("{it:?}"))
+    }
+
+    fn judged(&self, device: &Device, number: u64) -> Vec<SocketResult> {
+        let shown = self.rack.shown();
+        let order = BatchOrder {
+            sockets: shown.iter().map(|it| it.socket).collect(),
+            number: number + 1,
+        };
+        let recorded = Recorded {
+            record: &self.record,
+            cold_open: vec![false; shown.len()],
+            events: shown.into_iter().map(|it| it.events).collect(),
+            drops: &[],
+            pulses: &[],
+            ambient_c: self.ambient_c,
+            last: None,
+        };
+        judged(device, &order, &recorded, Some(&self.work))
     }
 }
 
-/// Returns the operate and reset windows, narrowed to the temperatures of the last pass.
-fn shown(record: &Record, rack: &Rack, lag_s: f64) -> [Window; 2] {
-    let filtered = record.filtered(lag_s);
-    let window = |which: usize| {
-        let last = |it: &Part| {
-            let all = if which == 0 {
-                &it.seen.operate
-            } else {
-                &it.seen.reset
-            };
-            filtered.at(all.last()?.first_s).map(|it| it.celsius)
-        };
-        let temperatures: Vec<f64> = rack.parts.iter().filter_map(last).collect();
-        narrowed(&temperatures, EXPECTED[which])
+/// Makes the device of the recipe on the rig that comes with the program, without slow repeats, and with the calibration of
+/// the study: a chain and sockets that need no correction, with the uncertainties from which their errors are drawn.
+fn device(kind: Kind) -> anyhow::Result<Device> {
+    let folder = Folder::built_in_rig("thermostat").context("a rig that comes with the program")?;
+    let plant = Configuration::load(&folder)?;
+    let mut recipe = load_recipe(&folder, kind.recipe)?;
+    recipe.decision.slow_repeats = 0;
+    let DeviceRecipe::Thermostat(thermostat) = recipe.device.clone() else {
+        anyhow::bail!("{} is no temperature relay", kind.recipe);
     };
-    [window(0), window(1)]
+    let points = Points::resolve(&plant.wiring)?;
+    let device = Device::new(Arc::new(recipe), &thermostat, points, plant.accuracy);
+    let right = |it| ChainPoint {
+        reading_c: it,
+        true_c: it,
+    };
+    let certificate = Certificate {
+        issued: String::new(),
+        chain: Chain {
+            points: [0.0, 100.0].map(right).into(),
+            u_k: CHAIN_K,
+        },
+        map: SocketMap {
+            excess_k: MAP_EXCESS_K,
+            offset_k: Vec::new(),
+            u_k: MAP_RESIDUAL_K,
+        },
+        chamber: None,
+    };
+    let made = Made {
+        at_us: 0,
+        valid_us: 0,
+        simulated: true,
+    };
+    Ok(device.calibrated(Some(Calibration::new(certificate, made))))
 }

@@ -1,16 +1,9 @@
 //! Errors of the estimates against the truth, and whether the stated uncertainty covers them.
 
 use super::rig::Outcome;
-use crate::controllers::plant::CHAIN_K;
 use crate::figure::{mean, percent, rms};
-use chamber::budget::Calibrations;
-use chamber::lag::{Estimate, Value};
-
-/// Calibrations of the study: the chain, and the map of the sockets.
-const CALIBRATED: Calibrations = Calibrations {
-    chain_k: Some(CHAIN_K),
-    map_k: Some(0.10),
-};
+use machine::dut::batch::SocketResult;
+use machine::dut::thermostat::Parameter;
 
 /// A quantity of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,28 +44,23 @@ pub fn misses<'a>(
     outcomes: impl IntoIterator<Item = &'a Outcome>,
     quantity: Quantity,
 ) -> Vec<Miss> {
-    let parts = outcomes
-        .into_iter()
-        .flat_map(|it| it.parts.iter().map(move |part| (it, part)));
-    let miss = |(it, (found, [operate_c, reset_c])): (&Outcome, &(Estimate, [f64; 2]))| {
-        let (value, truth): (Option<Value>, f64) = match quantity {
-            Quantity::Operate => (found.operate, *operate_c),
-            Quantity::Reset => (found.reset, *reset_c),
-            Quantity::Differential => (found.differential, operate_c - reset_c),
+    let miss = |(found, [operate_c, reset_c]): &(SocketResult, [f64; 2])| {
+        let (of, truth) = match quantity {
+            Quantity::Operate => (Parameter::Operate, *operate_c),
+            Quantity::Reset => (Parameter::Reset, *reset_c),
+            Quantity::Differential => (Parameter::Differential, operate_c - reset_c),
         };
-        let Value { value, u_k } = value?;
-        let budget = match quantity {
-            Quantity::Operate | Quantity::Reset => {
-                CALIBRATED.of_temperature(value - it.ambient_c, u_k)
-            }
-            Quantity::Differential => CALIBRATED.of_differential(value, u_k),
-        };
+        let reading = found.record.each(of).next()?;
         Some(Miss {
-            error_k: value - truth,
-            u_k: budget.expanded_k(),
+            error_k: reading.value - truth,
+            u_k: reading.budget.expanded(),
         })
     };
-    parts.filter_map(miss).collect()
+    outcomes
+        .into_iter()
+        .flat_map(|it| &it.parts)
+        .filter_map(miss)
+        .collect()
 }
 
 /// Returns the root mean square of the errors, K.

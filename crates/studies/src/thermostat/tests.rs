@@ -1,10 +1,11 @@
 //! Tests of small batches, and of the arithmetic of the figures.
 #![allow(clippy::unwrap_used)]
 
-use super::rig::{Known, Rig};
+use super::rig::{Outcome, Rig};
 use super::score::{Miss, Quantity, coverage_pct, mean_k, misses, rms_k};
 use super::world::Kind;
 use super::*;
+use machine::dut::thermostat::Parameter;
 
 fn rig(kind: Kind) -> Rig {
     Rig::new(kind, world::DEFAULT, 1).unwrap()
@@ -13,10 +14,10 @@ fn rig(kind: Kind) -> Rig {
 #[test]
 fn two_passes_find_the_lag_and_every_temperature() {
     let found = rig(Kind::KSD9700)
-        .batch(&batch(0, 12, &[5.0, 2.0], 2.0), Known::RECIPE)
+        .batch(&batch(0, 12, [5.0, 2.0]), None)
         .unwrap();
     assert_eq!(found.parts.len(), 12);
-    let lag = found.known.lag.unwrap();
+    let lag = found.lesson.lag.unwrap();
     // Behind the reference sensor, whose lag and delay are about 8 s.
     assert!((24.0..40.0).contains(&lag.seconds), "{lag:?}");
     for quantity in Quantity::ALL {
@@ -33,20 +34,20 @@ fn two_passes_find_the_lag_and_every_temperature() {
 #[test]
 fn a_known_lag_saves_a_pass() {
     let rig = rig(Kind::KSD9700);
-    let two = rig
-        .batch(&batch(0, 12, &[5.0, 2.0], 2.0), Known::RECIPE)
-        .unwrap();
-    let one = rig
-        .batch(&batch(1, 12, &[5.0, 2.0], 2.0), two.known)
-        .unwrap();
+    let two = rig.batch(&batch(0, 12, [5.0, 2.0]), None).unwrap();
+    let one = rig.batch(&batch(1, 12, [5.0, 2.0]), Some(&two)).unwrap();
     assert!(
         one.minutes < 0.75 * two.minutes,
         "{} {}",
         one.minutes,
         two.minutes
     );
-    assert!(one.parts.iter().all(|(found, _)| found.range_k.is_none()));
-    assert!(two.parts.iter().all(|(found, _)| found.range_k.is_some()));
+    let ranges = |it: &Outcome| {
+        let parts = it.parts.iter();
+        let all = parts.flat_map(|(found, _)| found.record.each(Parameter::Repeatability));
+        all.count()
+    };
+    assert_eq!((ranges(&one), ranges(&two)), (0, 12));
 }
 
 #[test]

@@ -5,6 +5,8 @@
 pub struct Kind {
     /// Name in reports.
     pub name: &'static str,
+    /// Name of the recipe.
+    pub recipe: &'static str,
     /// Lags of body and disc in air, s.
     pub lags_s: [f64; 2],
 }
@@ -13,18 +15,15 @@ impl Kind {
     /// A small snap-disc thermostat.
     pub const KSD9700: Self = Self {
         name: "KSD9700",
+        recipe: "thermostat-ksd9700",
         lags_s: [35.0, 4.0],
     };
     /// A snap-disc thermostat with a heavy cap.
     pub const KSD301: Self = Self {
         name: "KSD301",
+        recipe: "thermostat-ksd301",
         lags_s: [90.0, 8.0],
     };
-
-    /// Returns the lag that a recipe states for the first batch, s.
-    pub fn recipe_lag_s(self) -> f64 {
-        self.lags_s.iter().sum()
-    }
 }
 
 /// Deviations from the default world.
@@ -46,8 +45,8 @@ pub struct World {
     pub warm_parts: bool,
 }
 
-/// Scatter of a switching in the default world, which the estimates assume, K.
-pub const SCATTER_K: f64 = 0.15;
+/// Scatter of a switching in the default world, K.
+const SCATTER_K: f64 = 0.15;
 
 /// Nominal lag and mains, cold parts, a room of 18 to 28 C.
 pub const DEFAULT: World = World {

@@ -3,13 +3,10 @@
 use super::part::Thermostat;
 use super::table::RackTable;
 use super::truth::SocketTruth;
-use crate::config::Socket as SocketSpec;
+use crate::config::{OFFSETS_AT_K, Socket as SocketSpec};
 use crate::world::draw::Draw;
 use crate::world::edges::Edges;
 use crate::world::oven::Delay;
-
-/// Difference of the air to ambient at which the offset of a socket is stated, kelvin.
-const STATED_AT_K: f64 = 75.0;
 
 /// A part in a socket.
 #[derive(Debug, Clone)]
@@ -119,7 +116,7 @@ impl Rack {
     pub fn step(&mut self, from_us: u64, dt_s: f64, air_c: f64) {
         for socket in &mut self.sockets {
             let delayed_c = socket.delay.step(dt_s, air_c);
-            let offset_k = socket.offset_k * (delayed_c - self.ambient_c) / STATED_AT_K;
+            let offset_k = socket.offset_k * (delayed_c - self.ambient_c) / OFFSETS_AT_K;
             if let Some(loaded) = &mut socket.loaded {
                 loaded.part.step(from_us, dt_s, delayed_c + offset_k);
             }

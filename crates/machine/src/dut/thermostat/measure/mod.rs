@@ -32,10 +32,11 @@ use crate::rig::image::Image;
 use crate::rig::rack::Socket;
 use chamber::lag::{Switching, Transition};
 use contacts::Contact;
+pub use contacts::Events;
 use drop::{Found, Unreadable};
-use passes::Work;
-use results::Recorded;
-pub use results::SCATTER_K;
+pub use passes::{Seen, Work};
+pub use repeat::Shown;
+pub use results::{Recorded, SCATTER_K, batch as judged};
 use seconds::{Advance, Seconds};
 use texts::Message;
 use units::{RigTime, Span};
@@ -217,12 +218,9 @@ impl Test {
             (None, Err(Unreadable)) => Some(Ended::Found(Finding::DropNotReadable)),
             (why, _) => why,
         };
-        let complete = self
-            .ran
-            .as_deref()
-            .and_then(|it| Some((it, it.last.as_ref()?)));
+        let complete = self.ran.as_deref().filter(|it| it.last.is_some());
         let results = match (why, complete, &self.drops) {
-            (None, Some((ran, last)), Ok(drops)) => {
+            (None, Some(ran), Ok(drops)) => {
                 let contacts = self.contacts.iter();
                 let recorded = Recorded {
                     record: &ran.record,
@@ -231,7 +229,7 @@ impl Test {
                     drops,
                     pulses: &ran.pulses,
                     ambient_c: ran.ambient_c,
-                    last,
+                    last: ran.last.as_ref(),
                 };
                 troubles.extend(results::unexpected_lag(&self.device, &recorded));
                 results::batch(&self.device, &self.order, &recorded, ran.work.as_ref())

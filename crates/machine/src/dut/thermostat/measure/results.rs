@@ -16,7 +16,7 @@ use crate::gauge::{Budget, Reading};
 use crate::rig::sample::Sample;
 use chamber::budget::Calibrations;
 use chamber::lag::{
-    Estimate, LotLag, Noise, Record, Switching, Value, estimate, lot_lag, lot_scatter,
+    Estimate, LAG_SPREAD, LotLag, Noise, Record, Switching, Value, estimate, lot_lag, lot_scatter,
 };
 use std::sync::Arc;
 use units::Unit;
@@ -26,8 +26,9 @@ pub const SCATTER_K: f64 = 0.15;
 /// Standard uncertainty of a lag that only the recipe states, as a share of it.
 const STATED_LAG: f64 = 0.3;
 
-/// Ratio of the lag of a part to that of its lot above which the part is slow: beyond five times the spread of a lot.
-const SLOW: f64 = 2.0;
+/// Departure of the lag of a part from that of its lot above which the part is slow, in spreads of the lot: double at the
+/// usual spread of 15 %.
+const SLOW: f64 = 4.6;
 /// Departure of the lag of a lot from the expected one, as a share of the latter, above which a batch reports it.
 const ODD_LAG: f64 = 0.4;
 
@@ -45,8 +46,8 @@ pub struct Recorded<'a> {
     pub pulses: &'a [(usize, Pulse)],
     /// Temperature of the room, C.
     pub ambient_c: f64,
-    /// Last reading of the reference thermometer.
-    pub last: &'a Sample,
+    /// Last reading of the reference thermometer; `None` for a model that reads none.
+    pub last: Option<&'a Sample>,
 }
 
 impl Recorded<'_> {
@@ -63,8 +64,12 @@ impl Recorded<'_> {
 pub fn lot(device: &Device, record: &Record, events: &[Events]) -> (LotLag, bool, f64) {
     let all: Vec<Switching> = events.iter().map(|it| it.switching.clone()).collect();
     let test = &device.thermostat.test;
+    let assumed = Noise {
+        scatter_k: device.lesson.as_ref().map_or(SCATTER_K, |it| it.scatter_k),
+        sensor_lag_s: SENSOR_LAG_S,
+    };
     let told = (test.learning_k_per_min != test.rate_k_per_min)
-        .then(|| lot_lag(record, &all))
+        .then(|| lot_lag(record, &all, &assumed))
         .flatten()
         .filter(|it| 2 * it.parts >= all.len());
     let known = told.or(device.lesson.as_ref().and_then(|it| it.lag));
@@ -72,12 +77,9 @@ pub fn lot(device: &Device, record: &Record, events: &[Events]) -> (LotLag, bool
     let lag = known.unwrap_or(LotLag {
         seconds: stated_s,
         u_s: STATED_LAG * device.thermostat.part.lag_s,
+        spread: LAG_SPREAD,
         parts: 0,
     });
-    let assumed = Noise {
-        scatter_k: device.lesson.as_ref().map_or(SCATTER_K, |it| it.scatter_k),
-        sensor_lag_s: SENSOR_LAG_S,
-    };
     let scatter_k = lot_scatter(record, &all, &lag, &assumed);
     (lag, known.is_some(), scatter_k)
 }
@@ -154,13 +156,13 @@ fn judged(
                     record.found(Parameter::Creep, width, samples);
                 }
             }
-            if is_slow(device, recorded, &events.switching, lag) {
+            let found = estimate(recorded.record, &events.switching, lag, &noise);
+            if found.is_some_and(|it| is_slow(&it, lag)) {
                 record.stop(Finding::Slow);
             }
             if events.is_intermittent() {
                 record.stop(Finding::Intermittent);
             }
-            let found = estimate(recorded.record, &events.switching, lag, &noise);
             let site = Site::of(device, *socket, recorded.ambient_c);
             temperatures(&mut record, events, found, (&site, recorded));
         }
@@ -169,15 +171,11 @@ fn judged(
     sockets.iter().enumerate().map(one).collect()
 }
 
-/// Returns true for a part whose passes of two rates agree only with a lag far beyond that of its lot. A batch of a single
-/// pass tells no lag.
-fn is_slow(device: &Device, recorded: &Recorded, part: &Switching, lot: &LotLag) -> bool {
-    let test = &device.thermostat.test;
-    let rates_differ = test.learning_k_per_min != test.rate_k_per_min;
-    let own = rates_differ
-        .then(|| lot_lag(recorded.record, std::slice::from_ref(part)))
-        .flatten();
-    own.is_some_and(|own| own.seconds + SENSOR_LAG_S > SLOW * (lot.seconds + SENSOR_LAG_S))
+/// Returns true for a part whose lag is far beyond that of its lot. Passes of one rate tell no lag but that of the lot.
+fn is_slow(part: &Estimate, lot: &LotLag) -> bool {
+    let behind_air_s = |lag_s: f64| lag_s + SENSOR_LAG_S;
+    let ratio = behind_air_s(part.lag_s) / behind_air_s(lot.seconds);
+    ratio.ln() > SLOW * lot.spread
 }
 
 /// Returns void results for all parts of a batch that ended before it could judge them.
@@ -269,7 +267,7 @@ fn temperatures(
     found: Option<Estimate>,
     (site, recorded): (&Site, &Recorded),
 ) {
-    let samples = [recorded.last];
+    let samples = recorded.last;
     if let Some(edges) = events.most_extra_edges() {
         let reading = Reading {
             value: f64::from(edges),

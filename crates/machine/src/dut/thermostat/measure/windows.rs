@@ -47,7 +47,7 @@ pub fn shown(record: &Record, events: &[Events], lag_s: f64, expected: [Window; 
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use chamber::lag::LotLag;
+    use chamber::lag::{LAG_SPREAD, LotLag};
     use chamber::tune::{FirstOrder, Identified};
 
     const fn window(low_c: f64, high_c: f64) -> Window {
@@ -79,6 +79,7 @@ mod tests {
             lag: Some(LotLag {
                 seconds: 31.0,
                 u_s: 1.0,
+                spread: LAG_SPREAD,
                 parts: 40,
             }),
             windows: [window(81.5, 82.5), window(61.0, 63.0)],
