@@ -9,12 +9,15 @@
 //! | the instant at which the voltage jumps from the mains to the drop | [`turn`] |
 //! | resistive and capacitive part of a current | [`split`] |
 //! | drop against current | [`drop_line`] |
+//! | drop while a current warms the part | [`warming`] |
+//! | the level of a staircase at which the output turns on or off | [`staircase`] |
 
 pub mod drop_line;
 pub mod least_squares;
 pub mod mains;
 pub mod pulses;
 pub mod split;
+pub mod staircase;
 pub mod turn;
 pub mod warming;
 
@@ -108,6 +111,14 @@ impl<'a> Channel<'a> {
     /// Returns the greatest value in the direction of a sign, 1 or -1; at least 0.
     pub fn peak(&self, sign: f64) -> f64 {
         (0..self.len()).fold(0.0, |most, it| f64::max(most, sign * self.at(it)))
+    }
+
+    /// Returns the standard uncertainty that jumps give the mean of samples from `from` to before `to`: each lies anywhere
+    /// between its two samples. The noise of the samples counts as jumps.
+    pub fn jumps_u(&self, (from, to): (usize, usize)) -> f64 {
+        let steps = (from + 1..to).map(|it| self.at(it) - self.at(it - 1));
+        let squares: f64 = steps.map(|it| it * it).sum();
+        (squares / 12.0).sqrt() / (to - from).max(1) as f64
     }
 
     /// Yields time and value of every `stride`th sample from `from` to before `to`.

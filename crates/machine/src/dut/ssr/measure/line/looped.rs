@@ -12,7 +12,7 @@ use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
 use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
-use crate::dut::ssr::references::References;
+use crate::dut::ssr::references::{Doubt, References};
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::drop_line::{self, DropLine};
 use crate::dut::ssr::wave::mains::Mains;
@@ -59,7 +59,7 @@ pub struct Drops<'a> {
     /// The fitted sine of the current.
     pub current: Mains,
     rated_peak_a: f64,
-    is_referenced: bool,
+    referenced: Option<Doubt>,
 }
 
 /// Figures of a conducting output, read from the record of a loop.
@@ -71,18 +71,20 @@ pub struct OnState {
     pub rms_v: f64,
     /// Rise of the peak drop from the early to the late time, V.
     pub drift_v: f64,
-    /// Mean of the voltage, V.
-    pub offset_v: f64,
+    /// Mean of the voltage, V, and its standard uncertainty from the samples.
+    pub offset_v: (f64, f64),
     /// Difference of the output voltage from a sine, rms, V.
     pub distortion_v: f64,
-    /// Difference of the charges of both half cycles over their sum.
-    pub unequal: f64,
+    /// Difference of the charges of both half cycles over their sum, and its standard uncertainty from the samples.
+    pub unequal: (f64, f64),
+    /// Mean size of the current, A.
+    pub mean_a: f64,
     /// Slope resistance of the output, ohm.
     pub ohm: f64,
-    /// Standard uncertainty of the drop from noise, V.
+    /// Standard uncertainty of the drop of one period from noise, V.
     pub noise_v: f64,
-    /// True when references have corrected the voltages.
-    pub is_referenced: bool,
+    /// Noise of the references that have corrected both channels; `None` without them.
+    pub referenced: Option<Doubt>,
 }
 
 impl<'a> Drops<'a> {
@@ -112,7 +114,7 @@ impl<'a> Drops<'a> {
             ampere,
             current,
             rated_peak_a: SQRT_2 * ac.rated_a,
-            is_referenced: references.is_some(),
+            referenced: references.map(|it| it.doubt),
         })
     }
 
@@ -154,17 +156,22 @@ impl<'a> Drops<'a> {
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
         let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
         let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
+        let samples = (self.volts.index(whole.0), self.volts.index(whole.1));
         let charges = self.charges(whole);
+        let unequal = (charges.0 - charges.1).abs() / (charges.0 + charges.1);
+        let mean_a = (charges.0 + charges.1) / (samples.1 - samples.0) as f64;
+        let (peak_a, periods) = (self.rated_peak_a, (whole.1 - whole.0) * self.current.hz);
         Some(OnState {
             peak_v: peak.at(0.0),
             rms_v: rms.at(0.0),
             drift_v: drift_v(&peaks)?,
-            offset_v: self.mean_v(whole),
+            offset_v: (self.mean_v(whole), self.volts.jumps_u(samples)),
             distortion_v: self.distortion_v(whole, most_v)?,
-            unequal: (charges.0 - charges.1).abs() / (charges.0 + charges.1),
+            unequal: (unequal, self.ampere.jumps_u(samples) / mean_a),
+            mean_a,
             ohm: f64::midpoint(plus.ohm, minus.ohm),
-            noise_v: plus.u_v.hypot(minus.u_v) / 2.0,
-            is_referenced: self.is_referenced,
+            noise_v: plus.u_at(peak_a).hypot(minus.u_at(peak_a)) / 2.0 * periods.sqrt(),
+            referenced: self.referenced,
         })
     }
 
@@ -274,7 +281,7 @@ pub fn conclude(
     }
     let budget = |value_v: f64| accuracy::line_drop(plan, ac, &on, value_v);
     let offset = accuracy::line_offset(ac, &on);
-    let offset_mv = on.offset_v * 1e3;
+    let offset_mv = on.offset_v.0 * 1e3;
     use Parameter as P;
     use Unit::{Millivolt, Percent, Volt};
     state.found([
@@ -289,7 +296,7 @@ pub fn conclude(
         ),
         (
             P::HalfWave,
-            on.unequal * 100.0,
+            on.unequal.0 * 100.0,
             Percent,
             accuracy::unequal(ac, &on),
         ),
