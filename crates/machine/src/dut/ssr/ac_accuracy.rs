@@ -5,7 +5,7 @@ use super::ac_plan::{
     AcPlan, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM, LOOP_SHUNT_OHM, SHUNT_ERROR,
 };
 use super::measure::line::leakage::Leak;
-use super::measure::line::looped::{LATE, OnState};
+use super::measure::line::looped::OnState;
 use super::measure::line::references::REFERENCE_OHM;
 use super::measure::line::train::Walk;
 use super::plan::Plan;
@@ -36,13 +36,14 @@ const SCREEN: f64 = 8.0;
 /// Smallest peak whose share of the range matters: below it the curve is a straight line.
 const LEAST: f64 = 0.02;
 
-/// Difference between the mean drop of the first period and that after 10 ms, half width, as a share of the drift: for time
-/// constants of the junction from 10 to 40 ms.
-const FIRST: f64 = 0.1;
-
-/// Ratio of the noise of a cold drop, which is extrapolated from all periods, to that of the first period, for a junction
-/// that has warmed by the mean share of one period of its time constant.
+/// Noise of the cold drop and (the next constant) of the drift, both read from a curve through all periods, over the noise
+/// of one period: for time constants of the junction from 10 to 40 ms.
 const COLD: f64 = 1.6;
+const WARMED: f64 = 1.1;
+
+/// Share of the capacitive current that a mains whose amplitude changes within a record turns into phase with the voltage,
+/// standard deviation: 1 % that changes within 5 s.
+const WANDERS: f64 = 1.4e-4;
 
 /// Share of the distortion by which the mains moves it, standard deviation.
 const WAITS: f64 = 0.024;
@@ -100,6 +101,7 @@ pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> 
         .with_bounds("delay", turned_a(DELAY_LEFT_S) / ua)
         .with("noise of the reference", doubt.ratio * whole_a / ua)
         .with("noise of the fixture", doubt.stray_a / ua)
+        .with_random("mains", turned_a(WANDERS / TAU / ac.mains_hz) / ua)
 }
 
 /// Returns the error of a sine that the curve of a channel makes, half width, as a share: `scale_v` is the scale in volts
@@ -209,15 +211,13 @@ pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
     }
 }
 
-/// Returns the budget of the rise of the drop, mV, from the first period of the record to the last [`LATE`] ones. The
-/// offset is in both drops and cancels; the mains does not matter, because both are drops at the rated current.
+/// Returns the budget of the rise of the drop by heat, mV. The offset is in both drops and cancels; the mains does not matter,
+/// because both are drops at the rated current.
 pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
     let gain_share = gain(ac, on.referenced.is_some());
-    let noise_v = (1.0 + 1.0 / LATE as f64).sqrt() * on.noise_v;
     Budget::default()
         .with_bounds("gain", gain_share * on.drift_v * 1e3)
-        .with_bounds("first period", FIRST * on.drift_v * 1e3)
-        .with_random("noise", noise_v * 1e3)
+        .with_random("noise", WARMED * on.noise_v * 1e3)
 }
 
 /// Returns the budget of a distortion, mV, from that of a drop of the same size: the mains, whose harmonics and amplitude

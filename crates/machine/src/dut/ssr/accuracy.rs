@@ -17,15 +17,22 @@ pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
     rectangular(accuracy.gain(value)).hypot(rectangular(accuracy.offset))
 }
 
+/// Returns the part of a difference of two readings, A, that noise does not explain: only that shows a current that
+/// settles.
+fn beyond(moved: f64, noise_a: f64) -> f64 {
+    (moved.abs() - 3.0 * noise_a).max(0.0)
+}
+
 /// Returns the budget of a current in multiples of `unit_a` amperes. `moved` is the difference of two successive
 /// readings, A, which bounds what has yet to settle.
 pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Budget {
     let meter = &range.meter;
+    let noise_a = meter.noise_over(range.periods);
     Budget::default()
         .with_bounds("gain", meter.gain(ampere) / unit_a)
         .with_bounds("offset", meter.offset / unit_a)
-        .with_bounds("settling", moved / unit_a)
-        .with_random("noise", meter.noise_over(range.periods) / unit_a)
+        .with_bounds("settling", beyond(moved, noise_a) / unit_a)
+        .with_random("noise", noise_a / unit_a)
 }
 
 /// Returns the budget of a leakage, microamperes; the test subtracts the current of the open fixture when it is known.
@@ -42,8 +49,8 @@ pub fn leakage(
         return budget.with_bounds("source", share * ampere / 1e-6);
     }
     let noise_a = range.meter.noise_over(range.periods);
-    // The first of both readings is short and noisy: only more than its noise shows a current that settles.
-    let moved = (moved.abs() - 3.0 * range.meter.noise_over(BRIEF)).max(0.0);
+    // The first of both readings is short and noisy.
+    let moved = beyond(moved, range.meter.noise_over(BRIEF));
     Budget::default()
         .with_bounds("gain", range.meter.gain(ampere) / 1e-6)
         .with_bounds("source", share * ampere / 1e-6)

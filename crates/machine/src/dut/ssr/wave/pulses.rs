@@ -161,7 +161,8 @@ impl Output<'_> {
     }
 
     /// Returns the peak after each zero of the mains, from the turn-on to the falling edge. The true peak lies between
-    /// two samples, on average half an interval above the greatest one.
+    /// two samples, on average half of the last rise above the greatest one: a snubber makes the output rise slower than
+    /// the mains.
     fn again(&self, mains: &Mains, pulse: &Pulse, on_s: f64) -> Vec<f64> {
         let channel = &self.clamped;
         let mut peaks = Vec::new();
@@ -171,13 +172,16 @@ impl Output<'_> {
                 channel.index(zero_s - AGAIN_S),
                 channel.index(zero_s + AGAIN_S),
             );
-            let peak_v = (from..to).map(|it| self.at(it).abs()).fold(0.0, f64::max);
-            let rest_v = mains.slope(zero_s).abs() * channel.step_s / 2.0;
-            peaks.push(if peak_v > self.on_v / 2.0 {
-                peak_v + rest_v
-            } else {
-                peak_v
-            });
+            let size_v = |it: usize| self.at(it).abs();
+            let peak = (from..to).max_by(|one, other| size_v(*one).total_cmp(&size_v(*other)));
+            peaks.extend(peak.map(|it| {
+                let peak_v = size_v(it);
+                let rest_v = (peak_v - size_v(it.saturating_sub(1))).max(0.0) / 2.0;
+                match peak_v > self.on_v / 2.0 {
+                    true => peak_v + rest_v,
+                    false => peak_v,
+                }
+            }));
             zero_s += mains.half_s();
         }
         peaks

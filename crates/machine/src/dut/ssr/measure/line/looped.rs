@@ -24,8 +24,8 @@ use units::{Span, Unit};
 
 /// Least share of the peak current at which a sample counts for the fit of the drop.
 const LEAST: f64 = 0.3;
-/// Periods at the end of the record whose mean drop ends the drift.
-pub const LATE: usize = 2;
+/// Times after the begin of the current between which the drift counts, s.
+const DRIFT_S: [f64; 2] = [0.01, 0.2];
 /// Share of its range up to which the channel of the drop follows the output.
 const FOLLOWED: f64 = 0.93;
 /// Share of the peak of the current that both polarities reach at least in a whole wave.
@@ -141,12 +141,12 @@ impl<'a> Drops<'a> {
         Some(f64::midpoint(rms(&plus).powi(2), rms(&minus).powi(2)).sqrt())
     }
 
-    /// Returns whole periods that end before the end of the record and begin after the first period.
+    /// Returns whole periods, at least two, that end before the end of the record and begin after the first period.
     fn whole(&self) -> Option<(f64, f64)> {
         let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
         let begins_s = self.current.zero_after(1.0 / self.current.hz);
         let periods = ((last_s - begins_s) * self.current.hz).floor();
-        (periods >= 1.0).then(|| (begins_s, begins_s + periods / self.current.hz))
+        (periods >= 2.0).then(|| (begins_s, begins_s + periods / self.current.hz))
     }
 
     /// Returns the figures of the conducting output; `None` when there are too few samples. The channel of the drop
@@ -156,16 +156,15 @@ impl<'a> Drops<'a> {
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
         let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
         let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
+        let peak_v = |at_s: f64| peak.at(at_s * self.current.hz);
         let samples = (self.volts.index(whole.0), self.volts.index(whole.1));
-        let charges = self.charges(whole);
-        let unequal = (charges.0 - charges.1).abs() / (charges.0 + charges.1);
-        let mean_a = (charges.0 + charges.1) / (samples.1 - samples.0) as f64;
+        let (unequal, mean_a) = self.unequal(whole);
         let (peak_a, periods) = (self.rated_peak_a, (whole.1 - whole.0) * self.current.hz);
         Some(OnState {
-            peak_v: peak.at(0.0),
+            peak_v: peak_v(0.0),
             rms_v: rms.at(0.0),
-            drift_v: drift_v(&peaks)?,
-            offset_v: (self.mean_v(whole), self.volts.jumps_u(samples)),
+            drift_v: peak_v(DRIFT_S[1]) - peak_v(DRIFT_S[0]),
+            offset_v: (self.mean_v(whole, most_v), self.volts.jumps_u(samples)),
             distortion_v: self.distortion_v(whole, most_v)?,
             unequal: (unequal, self.ampere.jumps_u(samples) / mean_a),
             mean_a,
@@ -175,25 +174,34 @@ impl<'a> Drops<'a> {
         })
     }
 
-    /// Returns the mean voltage over whole periods, V; the interval at either end counts with its share.
-    fn mean_v(&self, (from_s, to_s): (f64, f64)) -> f64 {
+    /// Returns the mean voltage over whole periods, V; the interval at either end counts with its share. The range of the
+    /// channel ends at voltages whose sizes differ by its offset; `most_v` is below both, so that the peaks of both
+    /// polarities, at which the output waits, cancel.
+    fn mean_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> f64 {
         let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
-        let inner: f64 = (from..to).map(|it| self.volts.at(it)).sum();
+        let at = |it: usize| self.volts.at(it).clamp(-most_v, most_v);
+        let inner: f64 = (from..to).map(at).sum();
         let before = (self.volts.time(from) - from_s) / self.volts.step_s;
         let behind = 1.0 - (self.volts.time(to) - to_s) / self.volts.step_s;
-        let at = |it: usize| self.volts.at(it);
         // Sums the trapezoids between the samples, and a part of the interval at either end.
         let sum = inner + (before - 0.5) * at(from) + (behind - 0.5) * at(to.saturating_sub(1));
         sum * self.volts.step_s / (to_s - from_s)
     }
 
-    /// Returns the charges of the positive and of the negative half cycles, A s.
-    fn charges(&self, (from_s, to_s): (f64, f64)) -> (f64, f64) {
-        let (from, to) = (self.ampere.index(from_s), self.ampere.index(to_s));
-        (from..to).fold((0.0, 0.0), |(plus, minus), it| {
-            let ampere = self.ampere.at(it);
-            (plus + ampere.max(0.0), minus - ampere.min(0.0))
-        })
+    /// Returns the difference of the charges of both polarities over their sum, and the mean size of the current, A. A mains
+    /// that grows makes the polarity greater that comes second, so the result is the mean of two windows, half a period
+    /// apart.
+    fn unequal(&self, (from_s, to_s): (f64, f64)) -> (f64, f64) {
+        let (half_s, period_s) = (self.current.half_s(), 1.0 / self.current.hz);
+        let [one, other] = [0.0, half_s].map(|later_s| {
+            let (from_s, to_s) = (from_s + later_s, to_s - period_s + later_s);
+            let (from, to) = (self.ampere.index(from_s), self.ampere.index(to_s));
+            let all = (from..to).map(|it| self.ampere.at(it));
+            let (sum, size) = all.fold((0.0, 0.0), |(sum, size), it| (sum + it, size + it.abs()));
+            (sum / size, size / (to - from) as f64)
+        });
+        let unequal = f64::midpoint(one.0, other.0).abs();
+        (unequal, f64::midpoint(one.1, other.1))
     }
 
     /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods. The noise of the
@@ -247,14 +255,6 @@ impl<'a> Drops<'a> {
         });
         each.collect()
     }
-}
-
-/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V; `peaks` holds the drop of each
-/// period. The first period stands for 10 ms: any output, fast or slow, reaches the mean of this period after some 10
-/// ms. The mean of the last two periods stands for 200 ms.
-fn drift_v(peaks: &[f64]) -> Option<f64> {
-    let (first, last) = (peaks.first()?, peaks.last_chunk::<LATE>()?);
-    Some(last.iter().sum::<f64>() / LATE as f64 - first)
 }
 
 /// Concludes the loop.
