@@ -4,6 +4,7 @@
 use super::ac_plan::{
     AcPlan, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM, LOOP_SHUNT_OHM, SHUNT_ERROR,
 };
+use super::accuracy::{COLD, WARMED};
 use super::measure::line::leakage::Leak;
 use super::measure::line::looped::OnState;
 use super::measure::line::references::REFERENCE_OHM;
@@ -36,14 +37,12 @@ const SCREEN: f64 = 8.0;
 /// Smallest peak whose share of the range matters: below it the curve is a straight line.
 const LEAST: f64 = 0.02;
 
-/// Noise of the cold drop and (the next constant) of the drift, both read from a curve through all periods, over the noise
-/// of one period: for time constants of the junction from 10 to 40 ms.
-const COLD: f64 = 1.6;
-const WARMED: f64 = 1.1;
-
-/// Share of the capacitive current that a mains whose amplitude changes within a record turns into phase with the voltage,
-/// standard deviation: 1 % that changes within 5 s.
-const WANDERS: f64 = 1.4e-4;
+/// Slow deviation of the mains from its amplitude, standard deviation, as a share, and the time in which it changes, s.
+const WANDERS: f64 = 0.01;
+const WANDERS_S: f64 = 5.0;
+/// Share of the capacitive current that such a mains turns into phase with the voltage within the record of a leakage,
+/// standard deviation.
+const TURNS: f64 = 1.4e-4;
 
 /// Share of the distortion by which the mains moves it, standard deviation.
 const WAITS: f64 = 0.024;
@@ -101,7 +100,7 @@ pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> 
         .with_bounds("delay", turned_a(DELAY_LEFT_S) / ua)
         .with("noise of the reference", doubt.ratio * whole_a / ua)
         .with("noise of the fixture", doubt.stray_a / ua)
-        .with_random("mains", turned_a(WANDERS / TAU / ac.mains_hz) / ua)
+        .with_random("mains", turned_a(TURNS / TAU / ac.mains_hz) / ua)
 }
 
 /// Returns the error of a sine that the curve of a channel makes, half width, as a share: `scale_v` is the scale in volts
@@ -204,7 +203,11 @@ pub fn line_offset(ac: &AcPlan, on: &OnState) -> Budget {
 /// Returns the budget of the difference of the half cycles, percent.
 pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
     let pct = |volts: f64| volts / LOOP_SHUNT_OHM / on.mean_a * 100.0;
-    let budget = Budget::default().with_random("jumps", on.unequal.1 * 100.0);
+    // The halves that a window has more of one polarity at its end than at its begin, of all of them.
+    let grows = WANDERS * (2.0 * on.periods / ac.mains_hz / WANDERS_S).sqrt();
+    let budget = Budget::default()
+        .with_random("jumps", on.unequal.1 * 100.0)
+        .with_random("mains", grows / (4.0 * on.periods) * 100.0);
     match on.referenced {
         Some(doubt) => budget.with("zero", pct(doubt.shunt_zero_v)),
         None => budget.with_bounds("offset", pct(ac.offset_v(ac.looped().shunt_v))),

@@ -140,7 +140,12 @@ fn a_line_that_dies_in_a_leakage_fails_no_part() {
             bench.part.dead_from = bench.line_records + record;
             bench.part.dies_s = f64::from(dies_ms) / 1e3;
             let test = bench.tested(false);
-            assert_eq!(test.verdict().name(), "void", "{dies_ms} ms: {:?}", ended(&test));
+            assert_eq!(
+                test.verdict().name(),
+                "void",
+                "{dies_ms} ms: {:?}",
+                ended(&test)
+            );
         }
     }
 }

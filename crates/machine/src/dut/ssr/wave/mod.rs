@@ -36,6 +36,18 @@ pub fn tail(waveform: &Waveform, from_s: f64) -> Waveform {
     }
 }
 
+/// Returns the standard uncertainty that jumps give the mean of samples: each lies anywhere between its two samples. What a
+/// step exceeds the mean of its neighbours by is a jump, of which each neighbour shows another half.
+pub fn jumps_u(samples: &[f64]) -> f64 {
+    const OF_ALL: f64 = 12.0 * (1.0 + 0.25 + 0.25);
+    let steps: Vec<f64> = samples.windows(2).map(|it| it[1] - it[0]).collect();
+    let jumps = steps
+        .windows(3)
+        .map(|it| it[1] - f64::midpoint(it[0], it[2]));
+    let squares: f64 = jumps.map(|it| it * it).sum();
+    (squares / OF_ALL).sqrt() / samples.len().max(1) as f64
+}
+
 /// One channel of a record, borrowed: samples at equal intervals, each multiplied by a factor, minus an offset.
 #[derive(Debug, Clone, Copy)]
 pub struct Channel<'a> {
@@ -111,14 +123,6 @@ impl<'a> Channel<'a> {
     /// Returns the greatest value in the direction of a sign, 1 or -1; at least 0.
     pub fn peak(&self, sign: f64) -> f64 {
         (0..self.len()).fold(0.0, |most, it| f64::max(most, sign * self.at(it)))
-    }
-
-    /// Returns the standard uncertainty that jumps give the mean of samples from `from` to before `to`: each lies anywhere
-    /// between its two samples. The noise of the samples counts as jumps.
-    pub fn jumps_u(&self, (from, to): (usize, usize)) -> f64 {
-        let steps = (from + 1..to).map(|it| self.at(it) - self.at(it - 1));
-        let squares: f64 = steps.map(|it| it * it).sum();
-        (squares / 12.0).sqrt() / (to - from).max(1) as f64
     }
 
     /// Yields time and value of every `stride`th sample from `from` to before `to`.

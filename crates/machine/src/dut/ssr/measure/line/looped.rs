@@ -16,7 +16,7 @@ use crate::dut::ssr::references::{Doubt, References};
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::drop_line::{self, DropLine};
 use crate::dut::ssr::wave::mains::Mains;
-use crate::dut::ssr::wave::{split, warming};
+use crate::dut::ssr::wave::{jumps_u, split, warming};
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
 use std::f64::consts::SQRT_2;
@@ -77,6 +77,8 @@ pub struct OnState {
     pub distortion_v: f64,
     /// Difference of the charges of both half cycles over their sum, and its standard uncertainty from the samples.
     pub unequal: (f64, f64),
+    /// Whole periods behind both.
+    pub periods: f64,
     /// Mean size of the current, A.
     pub mean_a: f64,
     /// Slope resistance of the output, ohm.
@@ -157,16 +159,20 @@ impl<'a> Drops<'a> {
         let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
         let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
         let peak_v = |at_s: f64| peak.at(at_s * self.current.hz);
-        let samples = (self.volts.index(whole.0), self.volts.index(whole.1));
+        let samples = self.volts.index(whole.0)..self.volts.index(whole.1);
+        let clipped = samples.clone().map(|it| self.clipped(it, most_v));
+        let clipped: Vec<f64> = clipped.collect();
+        let ampere: Vec<f64> = samples.map(|it| self.ampere.at(it)).collect();
         let (unequal, mean_a) = self.unequal(whole);
         let (peak_a, periods) = (self.rated_peak_a, (whole.1 - whole.0) * self.current.hz);
         Some(OnState {
             peak_v: peak_v(0.0),
             rms_v: rms.at(0.0),
             drift_v: peak_v(DRIFT_S[1]) - peak_v(DRIFT_S[0]),
-            offset_v: (self.mean_v(whole, most_v), self.volts.jumps_u(samples)),
+            offset_v: (self.mean_v(whole, most_v), jumps_u(&clipped)),
             distortion_v: self.distortion_v(whole, most_v)?,
-            unequal: (unequal, self.ampere.jumps_u(samples) / mean_a),
+            unequal: (unequal, jumps_u(&ampere) / mean_a),
+            periods,
             mean_a,
             ohm: f64::midpoint(plus.ohm, minus.ohm),
             noise_v: plus.u_at(peak_a).hypot(minus.u_at(peak_a)) / 2.0 * periods.sqrt(),
@@ -179,13 +185,17 @@ impl<'a> Drops<'a> {
     /// polarities, at which the output waits, cancel.
     fn mean_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> f64 {
         let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
-        let at = |it: usize| self.volts.at(it).clamp(-most_v, most_v);
+        let at = |it: usize| self.clipped(it, most_v);
         let inner: f64 = (from..to).map(at).sum();
         let before = (self.volts.time(from) - from_s) / self.volts.step_s;
         let behind = 1.0 - (self.volts.time(to) - to_s) / self.volts.step_s;
         // Sums the trapezoids between the samples, and a part of the interval at either end.
         let sum = inner + (before - 0.5) * at(from) + (behind - 0.5) * at(to.saturating_sub(1));
         sum * self.volts.step_s / (to_s - from_s)
+    }
+
+    fn clipped(&self, index: usize, most_v: f64) -> f64 {
+        self.volts.at(index).clamp(-most_v, most_v)
     }
 
     /// Returns the difference of the charges of both polarities over their sum, and the mean size of the current, A. A mains

@@ -31,7 +31,11 @@ fn levels(search: &Search, direction: Direction, plan: &Plan) -> Levels {
     let (low_v, high_v) = search.window();
     let steps = ((high_v - low_v) / plan.resolution_v).ceil();
     // Two short staircases in a row resolve what a long one would.
-    let steps = if steps > MOST { steps.sqrt().ceil() } else { steps };
+    let steps = if steps > MOST {
+        steps.sqrt().ceil()
+    } else {
+        steps
+    };
     let step_v = (high_v - low_v) / steps.max(2.0);
     let low_v = (low_v / ROUND_V).round() * ROUND_V;
     let step_v = (step_v / ROUND_V).floor().max(1.0) * ROUND_V;
