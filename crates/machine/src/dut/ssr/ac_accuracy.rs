@@ -123,10 +123,13 @@ pub fn line_time(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Bu
 }
 
 /// Returns the budget of a time that counts from the trigger, microseconds: all edges share the interval of the samples in
-/// which the trigger lies.
+/// which the trigger lies. The pulses behind the mean lie half of the train after the trigger in the mean.
 pub fn from_trigger(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Budget {
     Budget::default()
-        .with_bounds("time base", base_us(plan, walk) + plan.time.gain(took_us))
+        .with_bounds(
+            "time base",
+            base_us(plan, walk) / 2.0 + plan.time.gain(took_us),
+        )
         .with_random_bounds("sample interval", sampled(walk.step_s, count) * 1e6)
         .with_random_bounds("trigger", walk.step_s / 2.0 * 1e6)
 }

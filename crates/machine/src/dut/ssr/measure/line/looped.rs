@@ -19,7 +19,7 @@ use crate::dut::ssr::wave::mains::Mains;
 use crate::dut::ssr::wave::{jumps_u, split, warming};
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{PI, SQRT_2};
 use units::{Span, Unit};
 
 /// Least share of the peak current at which a sample counts for the fit of the drop.
@@ -158,7 +158,8 @@ impl<'a> Drops<'a> {
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
         let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
         let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
-        let peak_v = |at_s: f64| peak.at(at_s * self.current.hz);
+        let lead_s = self.lead_s()?;
+        let peak_v = |at_s: f64| peak.at((at_s - lead_s) * self.current.hz);
         let samples = self.volts.index(whole.0)..self.volts.index(whole.1);
         let clipped = samples.clone().map(|it| self.clipped(it, most_v));
         let clipped: Vec<f64> = clipped.collect();
@@ -167,7 +168,7 @@ impl<'a> Drops<'a> {
         let (peak_a, periods) = (self.rated_peak_a, (whole.1 - whole.0) * self.current.hz);
         Some(OnState {
             peak_v: peak_v(0.0),
-            rms_v: rms.at(0.0),
+            rms_v: rms.at(-lead_s * self.current.hz),
             drift_v: peak_v(DRIFT_S[1]) - peak_v(DRIFT_S[0]),
             offset_v: (self.mean_v(whole, most_v), jumps_u(&clipped)),
             distortion_v: self.distortion_v(whole, most_v)?,
@@ -250,6 +251,16 @@ impl<'a> Drops<'a> {
             self.current
                 .zero_after(self.ampere.time(flows) - self.current.half_s() / 2.0),
         )
+    }
+
+    /// Returns how long the current has warmed the part before [`Self::begins_s`], s; below 0 when its first half cycle is
+    /// not whole. A part of a half cycle counts with its charge.
+    fn lead_s(&self) -> Option<f64> {
+        let period_s = 1.0 / self.current.hz;
+        let to = self.ampere.index(self.begins_s()? + period_s);
+        let size = (0..to).map(|it| self.ampere.at(it).abs());
+        let mean_a = self.current.amplitude() * 2.0 / PI;
+        Some(size.sum::<f64>() * self.ampere.step_s / mean_a - period_s)
     }
 
     /// Returns a value of each period from the begin of the current on; `of` computes the value between two instants,

@@ -50,8 +50,8 @@ pub enum AcStage {
     Threshold(Direction),
     /// Train of pulses that meet the mains at several phases.
     Train,
-    /// The record of the train once more, with the load current: the first look has found no mains, or an output
-    /// without any voltage.
+    /// The record of the train once more, with the load current, after the first look has not found a whole answer to
+    /// each pulse.
     TrainLine,
     /// The AC source goes to the voltage of the loop.
     LoopReady,

@@ -35,6 +35,8 @@ const NEAR_US: f64 = 400.0;
 const FOLLOWED: f64 = 0.85;
 /// Time without voltage that no zero of a live line explains, as a share of half a period.
 const SILENT: f64 = 0.25;
+/// Time in which the line must reach either polarity, in half periods: one, and what it takes to pass [`LOW`] twice.
+const ONE_SIGN: f64 = 1.4;
 /// Voltage of the line, as a share of its peak, that a live line exceeds except around its zeros.
 const LOW: f64 = 0.1;
 
@@ -124,15 +126,30 @@ pub fn walk(
     })
 }
 
-/// Returns true when the line has its voltage in the whole record: the voltage of the output and that of the load
-/// together. `None` when the channels do not fit each other.
+impl Walk {
+    /// Returns true when each pulse turns the output on and its end turns it off, with voltage before and behind.
+    fn is_whole(&self) -> bool {
+        let answers = |it: &Answer| it.on.is_some() && it.off_s.is_some();
+        !self.is_silent && self.answers.iter().all(answers)
+    }
+}
+
+/// Returns true when the line has its voltage in the whole record: the voltage of the output and that of the load together
+/// are low at zeros alone, and change their sign. A dead line leaves a constant voltage at the capacitance of the output.
+/// `None` when the channels do not fit each other.
 fn lives(ac: &AcPlan, [divided, shunt]: [&Waveform; 2]) -> Option<bool> {
     let output = Channel::of(divided, DIVIDER, 0.0)?;
     let load = Channel::of(shunt, LINE_OHM / LINE_SHUNT_OHM, 0.0)?;
-    let is_low = |it: usize| (output.at(it) + load.at(it)).abs() < LOW * ac.peak_v();
-    let count = (SILENT * ac.half_s() / output.step_s).ceil() as usize;
-    let fits = output.is_beside(&load);
-    fits.then(|| run_from(is_low, (0, output.len()), count).is_none())
+    let least_v = LOW * ac.peak_v();
+    let line_v = |it: usize| output.at(it) + load.at(it);
+    let lasts = |is_so: &dyn Fn(usize) -> bool, halves: f64| {
+        let count = (halves * ac.half_s() / output.step_s).ceil() as usize;
+        run_from(is_so, (0, output.len()), count).is_some()
+    };
+    let is_dead = lasts(&|it| line_v(it).abs() < least_v, SILENT)
+        || lasts(&|it| line_v(it) < least_v, ONE_SIGN)
+        || lasts(&|it| line_v(it) > -least_v, ONE_SIGN);
+    output.is_beside(&load).then_some(!is_dead)
 }
 
 /// Returns the offset of the clamped channel against the divided one, V, from the samples that both follow.
@@ -155,14 +172,14 @@ pub fn conclude(
     conclude_ready(state, ac, given);
     let [divided, clamped] = given.waveforms()?;
     let walk = walk(ac, state.references, [&divided, &clamped]);
-    if walk.as_ref().is_none_or(|it| it.is_silent) {
+    if !walk.as_ref().is_some_and(Walk::is_whole) {
         return Ok(Next::Insert(Stage::Ac(AcStage::TrainLine)));
     }
     judge(state, plan, ac, walk);
     Ok(Next::Planned)
 }
 
-/// Concludes the train after a second look at its record: an output without any voltage conducts well, or the line has
+/// Concludes the train after a second look at its record: the output answers wrongly or conducts well, or the line has
 /// died.
 pub fn conclude_line(
     state: &mut State,
