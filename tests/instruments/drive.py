@@ -62,14 +62,45 @@ def smu(address):
     check("smu: points", len(numbers), 102)
     check("smu: last point", numbers[101], 4e-3, 2e-3)
     check("smu: mean", unit.means, 2.75e-3, 5e-3)
+    check("smu: greatest", unit.maximums, 4e-3, 2e-3)
+    check("smu: least", unit.minimums, 1.5e-3, 5e-3)
+    check("smu: scatter", unit.standard_devs, 0.736e-3, 3e-2)
+    # What the programs `source`, `current_range` and `step` of the profile set, by the properties of the driver.
+    for mode in ["current", "voltage"]:
+        unit.source_mode = mode
+        check("smu: source mode", unit.source_mode, mode)
+    for name, value in [("source_voltage_range", 20.0), ("compliance_current", 0.02), ("current_range", 0.01),
+                        ("current_nplc", 1.0), ("source_voltage", 2.0)]:
+        setattr(unit, name, value)
+        check(f"smu: {name}", getattr(unit, name), value, 1e-6)
+    check("smu: current in its range", unit.current, 2e-3, 2e-3)
+    unit.ramp_to_voltage(3.0, steps=5, pause=1e-3)
+    check("smu: current after a ramp", unit.current, 3e-3, 2e-3)
     unit.apply_current(current_range=1e-3, compliance_voltage=10)
     unit.source_current = 1e-3
     unit.measure_voltage(nplc=1, voltage=2, auto_range=False)
     check("smu: voltage", unit.voltage, 1.0, 2e-3)
+    for name, value in [("source_current_range", 1e-3), ("compliance_voltage", 10.0), ("voltage_range", 2.0),
+                        ("voltage_nplc", 1.0)]:
+        setattr(unit, name, value)
+        check(f"smu: {name}", getattr(unit, name), value, 1e-6)
+    # The program `drops_over_time`: one query measures several times, another one reads all.
+    for command in [":SENS:VOLT:RSEN ON", ':TRAC:CLE "defbuffer1"', ":SENS:COUN 5", ":SOUR:CURR 5e-4", ":OUTP ON"]:
+        raw.write(command)
+    check("smu: last of five", float(raw.query(":READ?")), 0.5, 2e-3)
+    drops = raw.query_ascii_values('TRAC:DATA? 1,5,"defbuffer1",READ')
+    check("smu: five drops", len(drops), 5)
+    check("smu: first drop", drops[0], 0.5, 2e-3)
+    raw.write(":SENS:COUN 1")
     unit.measure_resistance(nplc=1, resistance=2e3, auto_range=True)
     check("smu: resistance", unit.resistance, 1000.0, 3e-3)
     unit.disable_source()
     check("smu: source", unit.source_enabled, False)
+    unit.apply_voltage(voltage_range=20, compliance_current=0.05)
+    unit.enable_source()
+    check("smu: source on", unit.source_enabled, True)
+    unit.shutdown()
+    check("smu: source after shutdown", unit.source_enabled, False)
     clean(raw, "smu")
 
 
@@ -88,6 +119,12 @@ def dmm(address):
     check("dmm: samples", len(raw.query_ascii_values("READ?")), 3)
     raw.write("INIT")
     check("dmm: fetched", len(raw.query_ascii_values("FETC?")), 3)
+    raw.write("SAMP:COUN 1")
+    for command in ["CONF:VOLT:DC 10", "SENS:VOLT:DC:NPLC 10"]:
+        raw.write(command)
+    check("dmm: averaging time", float(raw.query("SENS:VOLT:DC:NPLC?")), 10.0, 1e-6)
+    check("dmm: voltage in its range", abs(float(raw.query("READ?"))) < 1e-3, True)
+    raw.write("ABOR")
     raw.write("NONSENSE")
     check("dmm: error", raw.query("SYST:ERR?").strip(), '-113,"Undefined header"')
     clean(raw, "dmm")
@@ -104,6 +141,10 @@ def ac_source(manager, address):
     check("ac: voltage", float(source.query("MEAS:VOLT:AC?")), 230.0, 0.05)
     check("ac: current", float(source.query("MEAS:CURR:AC?")), 0.1, 0.3)
     check("ac: frequency", float(source.query("MEAS:FREQ?")), 50.0, 1e-3)
+    source.write("VOLT:AC 24.5")
+    check("ac: level of the loop", float(source.query("MEAS:VOLT:AC?")), 24.5, 0.08)
+    source.write("OUTP OFF")
+    check("ac: off", abs(float(source.query("MEAS:VOLT:AC?"))) < 1.0, True)
     clean(source, "ac")
     return adapter, source
 
@@ -130,7 +171,21 @@ def pulses(address):
     source.voltage_low = 0.0
     check("pulses: high", source.voltage_high, 5.0, 1e-6)
     check("pulses: period", source.pulse_period, 0.02, 1e-6)
+    check("pulses: width", source.pulse_width, 0.01, 1e-6)
+    # The programs `train` and `start`: a burst that waits for its trigger.
+    for name, value in [("burst_mode", "TRIG"), ("trigger_source", "BUS")]:
+        setattr(source, name, value)
+        check(f"pulses: {name}", getattr(source, name).strip(), value)
+    source.burst_ncycles = 6
+    check("pulses: burst_ncycles", source.burst_ncycles, 6.0, 1e-6)
+    source.burst_state = True
+    check("pulses: burst_state", source.burst_state, True)
     source.output = True
+    check("pulses: output", source.output, True)
+    source.trigger()
+    source.wait_for_trigger(timeout=20)
+    source.burst_state = False
+    check("pulses: errors", source.check_errors(), [])
     clean(source.adapter.connection, "pulses")
 
 
@@ -157,6 +212,17 @@ def rigol(manager, address):
     check("rigol: high", statistics.median(high), 5.0, 0.06)
     digitizer.write(":WAV:FORM BYTE")
     check("rigol: bytes", len(digitizer.query_binary_values(":WAV:DATA?", datatype="B")), 20000)
+    # The program `capture_all_falling` with `force_trigger`, and a record of another length.
+    for command in [":WAV:FORM WORD", ":ACQ:MDEP 1000", ":TIM:MAIN:SCAL 0.002", ":TIM:MAIN:OFFS 0.0096",
+                    ":TRIG:EDGE:SLOP NEG", ":TRIG:EDGE:LEV -4", ":SING"]:
+        digitizer.write(command)
+    check("rigol: waits", digitizer.query(":TRIG:STAT?").strip() in ["RUN", "WAIT"], True)
+    digitizer.write(":TFOR")
+    check("rigol: forced", digitizer.query("*OPC?").strip(), "1")
+    preamble = digitizer.query_ascii_values(":WAV:PRE?")
+    check("rigol: points of the record", preamble[2], 1000.0)
+    check("rigol: interval", preamble[4], 2e-5, 1e-6)
+    check("rigol: begin", preamble[5], -4e-4, 1e-6)
     clean(digitizer, "rigol")
 
 
@@ -179,6 +245,25 @@ def keysight(address):
     check("keysight: codes", len(codes), 20000)
     volts = [(code - preamble["yreference"]) * preamble["yincrement"] + preamble["yorigin"] for code in codes]
     check("keysight: high", max(volts), 5.0 / 1.05, 0.03)  # 50 ohm drive 1 kohm
+    scope.timebase_offset = 0.0096
+    check("keysight: offset", scope.timebase_offset, 0.0096, 1e-6)
+    scope.timebase_scale = 0.002
+    check("keysight: timebase", scope.timebase_range, 0.02, 1e-6)
+    scope.stop()
+    raw.write(":TRIG:EDGE:SLOP NEG")
+    raw.write(":TRIG:EDGE:LEV -4")
+    scope.single()
+    check("keysight: acquires", int(raw.query(":OPER:COND?")) & 8, 8)
+    raw.write(":TRIG:FORC")
+    check("keysight: forced", raw.query("*OPC?").strip(), "1")
+    check("keysight: complete record", int(raw.query(":OPER:COND?")) & 8, 0)
+    scope.waveform_points = 1000
+    check("keysight: points", scope.waveform_points, 1000.0, 1e-6)
+    for channel in ["channel1", "channel2"]:
+        scope.waveform_source = channel
+        check("keysight: source", scope.waveform_source, channel)
+    words = raw.query_binary_values(":WAV:DATA?", datatype="H", is_big_endian=False)
+    check("keysight: words", len(words), 1000)
     clean(raw, "keysight")
 
 

@@ -11,35 +11,105 @@ fn bin_of(defect: &Value) -> &'static str {
         None => "pass",
         Some("open_led" | "shorted_led" | "wrong_input_current" | "aged_led") => "input",
         Some("shorted_output" | "high_drop" | "thermal" | "stuck_on") => "output",
+        Some("half_wave" | "half_short" | "no_zero_cross") => "output",
         Some("slow_turn_on" | "slow_turn_off") => "time",
-        Some("leaky_junction") => "leakage",
+        Some("leaky_junction" | "open_snubber" | "wrong_snubber") => "leakage",
         Some("turned" | "missing_pin") => "retest",
         Some(other) => panic!("unknown defect {other}"),
     }
 }
 
+/// Runs a lot of 110 parts and checks the bin of each; returns the number of defects.
+fn sorted(workshop: &Workshop, run: &str) -> usize {
+    let said = workshop.run(&format!("{run} --count 110 --truth t.jsonl"));
+    let said = said.with_status(0);
+    let rows = objects(&said.stdout);
+    let parts: Vec<&Value> = rows.iter().filter(|it| it["type"] == "part").collect();
+    let truth = objects(&workshop.read("t.jsonl"));
+    assert_eq!((parts.len(), truth.len()), (110, 110));
+    let mut defects = 0;
+    for (part, true_part) in parts.iter().zip(&truth) {
+        assert_eq!(part["seq"], true_part["seq"]);
+        let bin = bin_of(&true_part["defect"]);
+        defects += usize::from(bin != "pass");
+        assert_eq!(part["bin"], bin, "{run}: {part}\n{true_part}");
+        assert_eq!(true_part["landed_in"], bin, "{run}: {true_part}");
+    }
+    defects
+}
+
 #[test]
 fn every_part_lands_in_the_bin_of_its_defect() {
     let workshop = Workshop::new("ssr-lot");
-    let mut defects = 0;
-    for seed in [1, 2] {
-        let said = workshop.run(&format!(
-            "{RUN} --lot S{seed} --count 110 --seed {seed} --truth t.jsonl"
-        ));
-        let said = said.with_status(0);
-        let rows = objects(&said.stdout);
-        let parts: Vec<&Value> = rows.iter().filter(|it| it["type"] == "part").collect();
-        let truth = objects(&workshop.read("t.jsonl"));
-        assert_eq!((parts.len(), truth.len()), (110, 110));
-        for (part, true_part) in parts.iter().zip(&truth) {
-            assert_eq!(part["seq"], true_part["seq"]);
-            let bin = bin_of(&true_part["defect"]);
-            defects += usize::from(bin != "pass");
-            assert_eq!(part["bin"], bin, "{part}\n{true_part}");
-            assert_eq!(true_part["landed_in"], bin, "{true_part}");
+    let lots = [1, 2].map(|seed| format!("{RUN} --lot S{seed} --seed {seed}"));
+    let defects: usize = lots.iter().map(|it| sorted(&workshop, it)).sum();
+    assert!(defects >= 4, "only {defects} defects in the lots");
+}
+
+/// A line with the distortion that EN 50160 permits, which drifts by more than any supply does.
+const BAD_LINE: &str = "[mains]\nthird_pct = 5.0\nfifth_pct = 6.0\namplitude_sd_pct = 2.0\n\
+    frequency_sd_hz = 0.1\nphase_sd_us = 30.0\nslow_s = 2.0\n";
+
+/// Lines of other plants: changes of the recipe, and the world.
+const LINES: [(&str, &[(&str, &str)], &str); 3] = [
+    (
+        "of 115 V and 60 Hz",
+        &[
+            ("mains_v = 230.0", "mains_v = 115.0"),
+            ("mains_hz = 50.0", "mains_hz = 60.0"),
+            ("{ low = 1000.0, high = 1900.0 }", "{ low = 600.0, high = 1150.0 }"),
+        ],
+        "",
+    ),
+    (
+        "of 60 Hz, distorted and drifting",
+        &[
+            ("mains_hz = 50.0", "mains_hz = 60.0"),
+            ("{ low = 1000.0, high = 1900.0 }", "{ low = 1200.0, high = 2280.0 }"),
+            ("i_leak_ua = { high = 2000.0 }", "i_leak_ua = { high = 2400.0 }"),
+            ("i_leak_hot_ua = { high = 2000.0 }", "i_leak_hot_ua = { high = 2400.0 }"),
+        ],
+        BAD_LINE,
+    ),
+    ("distorted and drifting", &[], BAD_LINE),
+];
+
+#[test]
+fn parts_land_in_their_bins_on_any_line() {
+    for (number, (line, changes, world)) in LINES.iter().enumerate() {
+        for kind in ["zc", "random"] {
+            let workshop = Workshop::new(&format!("ssr-line-{number}-{kind}"));
+            let recipe = format!("ssr-ac-240v-5a-{kind}");
+            let file = format!("config/rigs/ssr/recipes/{recipe}.toml");
+            for (from, to) in *changes {
+                workshop.change(&file, from, to);
+            }
+            workshop.write("world.toml", world);
+            let run = "--config config/rigs/ssr run --sim --world world.toml --json --lot A";
+            let defects = sorted(&workshop, &format!("{run} --recipe {recipe} --seed 1"));
+            assert!(defects >= 2, "{line}, {kind}: only {defects} defects");
         }
     }
-    assert!(defects >= 4, "only {defects} defects in the lots");
+}
+
+#[test]
+fn a_line_that_dies_at_any_instant_fails_no_part() {
+    let workshop = Workshop::new("ssr-line-dies");
+    let run = "--config config/rigs/ssr run --sim --json --recipe ssr-ac-240v-5a-zc --seed 1";
+    let mut voids = 0;
+    for number in 0..16 {
+        let at_s = 3.0 + 0.13 * f64::from(number);
+        let said = workshop.run(&format!(
+            "{run} --lot L{number} --count 3 --fault line_dead={at_s:.2}"
+        ));
+        let rows = objects(&said.stdout);
+        for part in rows.iter().filter(|it| it["type"] == "part") {
+            let verdict = part["verdict"].as_str().unwrap();
+            assert!(["pass", "void"].contains(&verdict), "{at_s:.2} s: {part}");
+            voids += usize::from(verdict == "void");
+        }
+    }
+    assert!(voids >= 16, "only {voids} parts without a line");
 }
 
 #[test]

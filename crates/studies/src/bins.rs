@@ -23,8 +23,9 @@ pub fn bin_of(defect: &str) -> Option<&'static str> {
         "stuck_nc" | "stuck_no" | "high_contact" | "unstable_contact" => "contact",
         "open_led" | "shorted_led" | "wrong_input_current" | "aged_led" => "input",
         "shorted_output" | "high_drop" | "thermal" | "stuck_on" => "output",
+        "half_wave" | "half_short" | "no_zero_cross" => "output",
         "slow_turn_on" | "slow_turn_off" => "time",
-        "leaky_junction" => "leakage",
+        "leaky_junction" | "open_snubber" | "wrong_snubber" => "leakage",
         "turned" | "missing_pin" => "retest",
         _ => return None,
     })

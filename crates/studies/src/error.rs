@@ -41,23 +41,26 @@ pub fn error(characteristic: Characteristic, reading: &Reading) -> f64 {
 pub struct Errors {
     spread: Spread,
     covered: u64,
+    truths: Spread,
 }
 
 impl Errors {
     /// Collects the errors of the good parts of a lot.
     pub fn of(characteristic: Characteristic, lot: &Lot) -> Self {
         let readings = || lot.good().filter_map(|part| part.reading(characteristic));
+        let truths: Vec<f64> = readings().map(|reading| reading.truth).collect();
         Self {
             covered: readings().filter(is_covered).count() as u64,
+            truths: Spread::of(&truths),
             ..Self::listed(readings().map(|reading| error(characteristic, &reading)))
         }
     }
 
-    /// Collects the given errors; their values have no uncertainty and thus no coverage.
+    /// Collects the given errors; their values have no uncertainty and thus no coverage, and no truth.
     fn listed(errors: impl Iterator<Item = f64>) -> Self {
         Self {
             spread: Spread::of(&errors.collect::<Vec<f64>>()),
-            covered: 0,
+            ..Self::default()
         }
     }
 
@@ -131,6 +134,12 @@ impl Pooled {
     /// Returns the median over lots of the mean error.
     pub fn median_bias(&self) -> Option<f64> {
         let each: Vec<f64> = self.0.iter().filter_map(Errors::bias).collect();
+        median(&each)
+    }
+
+    /// Returns the median over lots of the mean true value, in the unit of the characteristic.
+    pub fn median_truth(&self) -> Option<f64> {
+        let each: Vec<f64> = self.0.iter().filter_map(|it| it.truths.mean()).collect();
         median(&each)
     }
 

@@ -5,7 +5,8 @@
 //!   lot, the bias (median over lots of the mean error), the greatest error of any part and the pooled coverage.
 //! - Coverage: how often the stated uncertainty (k = 2) covers the truth, pooled over good parts of many lots. Every
 //!   lot has its own rig, so that the lots sample the errors that stay the same within a lot. Too high is as wrong as
-//!   too low: an uncertainty that always covers the truth is stated too large.
+//!   too low: an uncertainty that always covers the truth is stated too large. A characteristic without any error, such as
+//!   a number of half periods of the mains, has no bar.
 
 use super::bins;
 use super::chart::Chart;
@@ -28,7 +29,12 @@ const CHART_FROM_PCT: f64 = 80.0;
 /// Fails when a lot cannot be run.
 pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
     let rated_v = order.recipe.device.part().nominal_v;
-    let accepted = |it: Characteristic| it.accepted_error(rated_v).map(|it| it.rms);
+    let accepted = |it: Characteristic, errors: &Pooled| {
+        let accepted = it.accepted_error(rated_v)?;
+        // A lot without values has no true ones either, and misses any bar.
+        let truth = errors.median_truth().unwrap_or(0.0);
+        Some(accepted.rms + accepted.share * truth.abs())
+    };
     let row = |characteristic: Characteristic, errors: &Pooled| {
         let (n, rms) = (errors.n(), errors.median_rms());
         let figure = Figure::new(characteristic.key(), n, rms, unit(characteristic))
@@ -36,12 +42,15 @@ pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
             .with("bias", errors.median_bias())
             .with("max", errors.worst())
             .with("coverage_pct", errors.coverage_pct());
-        match accepted(characteristic) {
+        match accepted(characteristic, errors) {
             Some(rms) => figure.bar(Bar::AtMost(rms)),
             None => figure,
         }
     };
-    let share = |characteristic, rms| accepted(characteristic).map(|allowed| 100.0 * rms / allowed);
+    let share = |figure: &Figure| match figure.bar {
+        Some(Bar::AtMost(allowed)) => figure.value.map(|rms| 100.0 * rms / allowed),
+        Some(Bar::Below(_) | Bar::AtLeast(_) | Bar::Within(..)) | None => None,
+    };
     let title = "rms error as a share of what is allowed";
     let chart = Chart::new(title, "%", vec![100.0], []);
     study("accuracy", order, row, share, chart)
@@ -54,25 +63,27 @@ pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
 pub fn coverage(order: &Order) -> anyhow::Result<Report> {
     let (low, high) = COVERAGE_PCT;
     let row = |characteristic: Characteristic, errors: &Pooled| {
-        Figure::new(characteristic.key(), errors.n(), errors.coverage_pct(), "%")
-            .with("worst_lot", errors.worst_coverage_pct())
-            .bar(Bar::Within(low, high))
+        let figure = Figure::new(characteristic.key(), errors.n(), errors.coverage_pct(), "%")
+            .with("worst_lot", errors.worst_coverage_pct());
+        match errors.worst() {
+            Some(0.0) => figure,
+            Some(_) | None => figure.bar(Bar::Within(low, high)),
+        }
     };
     let title = "coverage of the stated uncertainty";
     let chart = Chart {
         from: CHART_FROM_PCT,
         ..Chart::new(title, "%", vec![low, high], [])
     };
-    study("coverage", order, row, |_, percent| Some(percent), chart)
+    study("coverage", order, row, |figure| figure.value, chart)
 }
 
-/// Runs the lots and makes the report; `length` returns the length of the bar in `chart` for the figure of a
-/// characteristic.
+/// Runs the lots and makes the report; `length` returns the length of the bar in `chart` for a figure.
 fn study(
     study: &'static str,
     order: &Order,
     row: impl Fn(Characteristic, &Pooled) -> Figure,
-    length: impl Fn(Characteristic, f64) -> Option<f64>,
+    length: impl Fn(&Figure) -> Option<f64>,
     mut chart: Chart,
 ) -> anyhow::Result<Report> {
     let lots: Vec<Lot> = order.run_all()?;
@@ -85,12 +96,8 @@ fn study(
     let all: Vec<(Characteristic, Pooled)> = all.filter(measured).collect();
     let rows: Vec<Figure> = all.iter().map(|(it, errors)| row(*it, errors)).collect();
     chart.title = format!("{}: {}", chart.title, order.about());
-    chart.bars = (all.iter().zip(&rows))
-        .map(|((it, _), figure)| {
-            let length = figure.value.and_then(|value| length(*it, value));
-            (figure.name.clone(), length)
-        })
-        .collect();
+    let bars = rows.iter().map(|it| (it.name.clone(), length(it)));
+    chart.bars = bars.collect();
     let groups = vec![rows, bins::outcome(&lots), bins::machine(&lots)];
     Ok(Report::new(study, order.about(), groups, chart).noted(exception::outcome(&lots)))
 }

@@ -43,8 +43,18 @@ pub enum ErrorUnit {
 pub struct AcceptedError {
     /// Unit of `rms`.
     pub unit: ErrorUnit,
-    /// The error.
+    /// The error at a true value of 0.
     pub rms: f64,
+    /// What the true value adds to it, as a share of that value, which has the same unit.
+    pub share: f64,
+}
+
+impl AcceptedError {
+    /// An error that does not depend on the true value.
+    pub const fn of(unit: ErrorUnit, rms: f64) -> Self {
+        let share = 0.0;
+        Self { unit, rms, share }
+    }
 }
 
 /// A characteristic of one kind of device. The default methods suit a characteristic that does not depend on

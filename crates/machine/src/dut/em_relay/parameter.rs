@@ -203,7 +203,7 @@ impl KindCharacteristic for Parameter {
         } else {
             (ErrorUnit::Own, allowed_rms)
         };
-        Some(AcceptedError { unit, rms })
+        Some(AcceptedError::of(unit, rms))
     }
 
     fn lower_bound(&self, curves: &[Curve], rated_v: Option<f64>) -> Option<f64> {

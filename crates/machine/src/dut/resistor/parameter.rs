@@ -31,10 +31,7 @@ impl KindCharacteristic for Parameter {
 
     fn accepted_error(&self, _rated_v: Option<f64>) -> Option<AcceptedError> {
         match self {
-            Self::Resistance => Some(AcceptedError {
-                unit: ErrorUnit::Percent,
-                rms: 0.12,
-            }),
+            Self::Resistance => Some(AcceptedError::of(ErrorUnit::Percent, 0.12)),
         }
     }
 }

@@ -1,9 +1,13 @@
 //! Uncertainty budgets of AC parts, from the accuracies of digitizer, source and shunts and from the terms of each
 //! method.
 
-use super::ac_plan::{AcPlan, CLAMP_V, SHUNT_ERROR};
+use super::ac_plan::{
+    AcPlan, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM, LOOP_SHUNT_OHM, SHUNT_ERROR,
+};
+use super::accuracy::{COLD, WARMED};
 use super::measure::line::leakage::Leak;
-use super::measure::line::looped::{LATE, OnState};
+use super::measure::line::looped::OnState;
+use super::measure::line::references::REFERENCE_OHM;
 use super::measure::line::train::Walk;
 use super::plan::Plan;
 use crate::gauge::Budget;
@@ -13,8 +17,8 @@ use std::f64::consts::{SQRT_2, TAU};
 const REFERENCE: f64 = 0.001;
 /// Delay between two channels that no reference has corrected, half width, s.
 const DELAY_S: f64 = 5e-6;
-/// Delay that remains after a reference has corrected it, half width, s.
-const DELAY_LEFT_S: f64 = 2e-6;
+/// Delay that remains after a reference has corrected it, half width, s: amplifiers of two scales differ by less.
+const DELAY_LEFT_S: f64 = 0.2e-6;
 /// Error of a gain after correction by a reference that was measured at another scale, as a share: either scale adds 0.1 %
 /// (half width) of its own, so that the difference has the uncertainty of this half width.
 const GAIN_LEFT: f64 = 0.001 * SQRT_2;
@@ -25,12 +29,20 @@ const CURVE: f64 = 0.005;
 /// Error of a channel between its zero and its ends that a reference does not correct, half width, as a share of its
 /// range: a step of a converter of 12 bits.
 const LINEARITY: f64 = 2.5e-4;
+/// Share of that error of the clamped channel which is left below the reference: a smooth curve that is right at 0 and at
+/// 0.7 of its end bends by 0.7³ as much between them.
+const LEFT: f64 = 0.343;
+/// Vertical divisions of the range of a channel.
+const SCREEN: f64 = 8.0;
+/// Smallest peak whose share of the range matters: below it the curve is a straight line.
+const LEAST: f64 = 0.02;
 
-/// Change of the mains between the two ends of a drift, half width, as a share of the drop.
-const MAINS: f64 = 0.0007;
-/// Difference between the mean drop of the first period and that after 10 ms, half width, as a share of the drift: for time
-/// constants of the junction from 10 to 40 ms.
-const FIRST: f64 = 0.1;
+/// Slow deviation of the mains from its amplitude, standard deviation, as a share, and the time in which it changes, s.
+const WANDERS: f64 = 0.01;
+const WANDERS_S: f64 = 5.0;
+/// Share of the capacitive current that such a mains turns into phase with the voltage within the record of a leakage,
+/// standard deviation.
+const TURNS: f64 = 1.4e-4;
 
 /// Share of the distortion by which the mains moves it, standard deviation.
 const WAITS: f64 = 0.024;
@@ -58,26 +70,43 @@ fn gain(ac: &AcPlan, is_referenced: bool) -> f64 {
 /// capacitive part look resistive.
 pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> Budget {
     let (_, capacitive_a) = leak.split_a(ac);
-    let delay_s = if leak.is_referenced {
-        DELAY_LEFT_S
-    } else {
-        DELAY_S
-    };
-    // The reference in the same line has shown the product of shunt and gains, at another scale of the shunt channel.
-    let (divided, shunt) = match leak.is_referenced {
-        true => (REFERENCE, GAIN_LEFT),
-        false => (gain(ac, false), gain(ac, false) + SHUNT_ERROR),
-    };
-    let turned_a = TAU * ac.mains_hz * delay_s * capacitive_a;
-    let turned_a = match part {
-        LeakageOf::Resistive => turned_a,
+    let (whole_a, ua) = (leak.rms_a(ac), 1e-6);
+    let turned_a = |delay_s: f64| match part {
+        LeakageOf::Resistive => TAU * ac.mains_hz * delay_s * capacitive_a,
         LeakageOf::Whole | LeakageOf::Capacitive => 0.0,
     };
-    Budget::default()
-        .with_bounds("gain", divided * value_a / 1e-6)
-        .with_bounds("gain of the shunt", shunt * value_a / 1e-6)
-        .with_bounds("delay", turned_a / 1e-6)
-        .with_random("noise", leak.noise_a / 1e-6)
+    let scales = ac.leakage();
+    let shown_v = SQRT_2 * whole_a * LINE_SHUNT_OHM;
+    let budget = Budget::default()
+        .with_bounds("linearity", bent(scales.shunt_v, shown_v) * value_a / ua)
+        .with_random("noise", leak.noise_a / ua);
+    let Some(doubt) = leak.referenced else {
+        let gain = gain(ac, false);
+        return budget
+            .with_bounds("gain", gain * value_a / ua)
+            .with_bounds("gain of the shunt", (gain + SHUNT_ERROR) * value_a / ua)
+            .with_bounds("delay", turned_a(DELAY_S) / ua);
+    };
+    // The reference in the same line has shown the product of shunt and gains, at another scale of the shunt channel and at
+    // another voltage of the divided one.
+    let reference_a = ac.peak_v() / (LINE_OHM + REFERENCE_OHM);
+    let reference = bent(ac.reference_shunt_v(), reference_a * LINE_SHUNT_OHM);
+    let divided = bent(scales.divided_v, ac.peak_v() / DIVIDER);
+    budget
+        .with_bounds("gain", REFERENCE * value_a / ua)
+        .with_bounds("gain of the shunt", GAIN_LEFT * value_a / ua)
+        .with_bounds("linearity of the reference", reference * value_a / ua)
+        .with_bounds("linearity of the voltage", divided * value_a / ua)
+        .with_bounds("delay", turned_a(DELAY_LEFT_S) / ua)
+        .with("noise of the reference", doubt.ratio * whole_a / ua)
+        .with("noise of the fixture", doubt.stray_a / ua)
+        .with_random("mains", turned_a(TURNS / TAU / ac.mains_hz) / ua)
+}
+
+/// Returns the error of a sine that the curve of a channel makes, half width, as a share: `scale_v` is the scale in volts
+/// per division, `peak_v` the peak at the channel.
+fn bent(scale_v: f64, peak_v: f64) -> f64 {
+    LINEARITY * SCREEN * scale_v / peak_v.max(LEAST * SCREEN * scale_v)
 }
 
 /// Returns the budget of a time from the pulse train, microseconds: the mean of `count` instants, each known to one
@@ -94,10 +123,13 @@ pub fn line_time(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Bu
 }
 
 /// Returns the budget of a time that counts from the trigger, microseconds: all edges share the interval of the samples in
-/// which the trigger lies.
+/// which the trigger lies. The pulses behind the mean lie half of the train after the trigger in the mean.
 pub fn from_trigger(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Budget {
     Budget::default()
-        .with_bounds("time base", base_us(plan, walk) + plan.time.gain(took_us))
+        .with_bounds(
+            "time base",
+            base_us(plan, walk) / 2.0 + plan.time.gain(took_us),
+        )
         .with_random_bounds("sample interval", sampled(walk.step_s, count) * 1e6)
         .with_random_bounds("trigger", walk.step_s / 2.0 * 1e6)
 }
@@ -144,55 +176,54 @@ fn source_share(plan: &Plan, ac: &AcPlan) -> f64 {
 
 /// Returns the budget of a drop at the rated current, V.
 pub fn line_drop(plan: &Plan, ac: &AcPlan, on: &OnState, value_v: f64) -> Budget {
-    let gain_share = match on.is_referenced {
+    let gain_share = match on.referenced.is_some() {
         true => source_share(plan, ac),
         false => gain(ac, false),
     };
-    let offset_v = match on.is_referenced {
-        true => LINEARITY * 8.0 * ac.drop_scale_v,
+    let offset_v = match on.referenced.is_some() {
+        true => LINEARITY * SCREEN * ac.drop_scale_v * LEFT,
         // An offset has opposite signs in the two polarities, and their mean cancels it but for a twentieth.
         false => 0.05 * ac.offset_v(ac.drop_scale_v),
     };
-    let current = (gain(ac, on.is_referenced) + SHUNT_ERROR) * on.ohm * SQRT_2 * ac.rated_a;
+    let current = (gain(ac, on.referenced.is_some()) + SHUNT_ERROR) * on.ohm * SQRT_2 * ac.rated_a;
     Budget::default()
         .with_bounds("gain", gain_share * value_v)
         .with_bounds("offset", offset_v)
         .with_bounds("current gain", current)
-        .with_random("noise", on.noise_v)
+        .with_random("noise", COLD * on.noise_v)
 }
 
-/// Returns the budget of the mean voltage of the conducting output (DC offset), mV.
+/// Returns the budget of the mean voltage of the conducting output (DC offset), mV. The curve of a channel is odd, as that
+/// of a symmetrical input stage, and cancels between the polarities.
 pub fn line_offset(ac: &AcPlan, on: &OnState) -> Budget {
-    let offset_v = match on.is_referenced {
-        true => LINEARITY * 8.0 * ac.drop_scale_v,
-        false => ac.offset_v(ac.drop_scale_v),
-    };
-    Budget::default()
-        .with_bounds("offset", offset_v * 1e3)
-        .with_bounds("window", on.peak_v)
-        .with_random("noise", on.noise_v * 1e3)
+    let budget = Budget::default().with_random("jumps", on.offset_v.1 * 1e3);
+    match on.referenced {
+        Some(doubt) => budget.with("zero", doubt.zero_v * 1e3),
+        None => budget.with_bounds("offset", ac.offset_v(ac.drop_scale_v) * 1e3),
+    }
 }
 
-/// Returns the budget of the difference of the half cycles, percent; its only term is the offset of the shunt channel.
+/// Returns the budget of the difference of the half cycles, percent.
 pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
-    let mean_v = SQRT_2 * ac.rated_a * super::ac_plan::LOOP_SHUNT_OHM * 2.0 / std::f64::consts::PI;
-    let offset_v = match on.is_referenced {
-        true => LINEARITY * 8.0 * ac.looped().shunt_v,
-        false => ac.offset_v(ac.looped().shunt_v),
-    };
-    Budget::default().with_bounds("offset", offset_v / mean_v * 100.0)
+    let pct = |volts: f64| volts / LOOP_SHUNT_OHM / on.mean_a * 100.0;
+    // The halves that a window has more of one polarity at its end than at its begin, of all of them.
+    let grows = WANDERS * (2.0 * on.periods / ac.mains_hz / WANDERS_S).sqrt();
+    let budget = Budget::default()
+        .with_random("jumps", on.unequal.1 * 100.0)
+        .with_random("mains", grows / (4.0 * on.periods) * 100.0);
+    match on.referenced {
+        Some(doubt) => budget.with("zero", pct(doubt.shunt_zero_v)),
+        None => budget.with_bounds("offset", pct(ac.offset_v(ac.looped().shunt_v))),
+    }
 }
 
-/// Returns the budget of the rise of the drop, mV, from the first period of the record, a tenth of its samples, to the
-/// last [`LATE`] periods. The offset is in both drops and cancels.
+/// Returns the budget of the rise of the drop by heat, mV. The offset is in both drops and cancels; the mains does not matter,
+/// because both are drops at the rated current.
 pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
-    let gain_share = gain(ac, on.is_referenced);
-    let noise_v = (10.0 + 10.0 / LATE as f64).sqrt() * on.noise_v;
+    let gain_share = gain(ac, on.referenced.is_some());
     Budget::default()
         .with_bounds("gain", gain_share * on.drift_v * 1e3)
-        .with_bounds("first period", FIRST * on.drift_v * 1e3)
-        .with_random("noise", noise_v * 1e3)
-        .with_random_bounds("mains", MAINS * on.peak_v * 1e3)
+        .with_random("noise", WARMED * on.noise_v * 1e3)
 }
 
 /// Returns the budget of a distortion, mV, from that of a drop of the same size: the mains, whose harmonics and amplitude

@@ -53,6 +53,8 @@ const BETWEEN_HALVES: f64 = 3.0;
 const PULSE_HALVES: f64 = 1.5;
 /// Share of a record before its trigger.
 pub const BEFORE: f64 = 0.02;
+/// Samples in half a period of the record of a staircase: the level at a zero is known to a hundredth of its time.
+const PER_HALF: f64 = 200.0;
 
 /// Plan of an output that switches an AC load.
 #[derive(Debug, Clone, PartialEq)]
@@ -177,6 +179,11 @@ impl AcPlan {
         }
     }
 
+    /// Returns the scale of the shunt channel for the reference resistor on the line, V per division.
+    pub fn reference_shunt_v(&self) -> f64 {
+        self.line(0.0, 0.0).shunt_v
+    }
+
     /// Returns the scales of a record that only shows whether the output blocks from `off_s` after its trigger on.
     pub fn blocks(&self, off_s: f64) -> Scales {
         Scales {
@@ -211,6 +218,13 @@ impl AcPlan {
             record_s: LOOP_S.max(0.2 + 1.1 * self.half_s()) / (1.0 - BEFORE),
             points: 6e3,
         }
+    }
+
+    /// Returns the scales of the record of a staircase of the control voltage that takes `takes_s`.
+    pub fn staircase(&self, takes_s: f64) -> Scales {
+        let record_s = takes_s / (1.0 - BEFORE);
+        let points = (PER_HALF * record_s / self.half_s()).ceil();
+        self.line(record_s, points.max(1e3))
     }
 
     /// Returns the scales of a record on the line, of this length and number of samples, for an output that may block

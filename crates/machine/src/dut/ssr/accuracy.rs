@@ -6,8 +6,13 @@ use crate::gauge::Budget;
 use crate::gauge::budget::rectangular;
 use scpi::Accuracy;
 
-/// Readings of the drop over time that make its last value: the two around 200 ms.
-pub const LAST_DROPS: usize = 2;
+/// Noise of the cold drop and (the next constant) of the drift, both read from a curve through the drops of all periods,
+/// over the noise of one drop, for a junction with a time constant of one period.
+pub const COLD: f64 = 2.6;
+/// See [`COLD`].
+pub const WARMED: f64 = 1.1;
+/// The same of the difference between the cold drops at full and at half current; their errors by the curve are alike.
+const APART: f64 = 2.4;
 
 /// Averaging time of the reading that shows whether a leakage has settled, periods of the mains.
 const BRIEF: f64 = 0.1;
@@ -17,15 +22,22 @@ pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
     rectangular(accuracy.gain(value)).hypot(rectangular(accuracy.offset))
 }
 
+/// Returns the part of a difference of two readings, A, that noise does not explain: only that shows a current that
+/// settles.
+fn beyond(moved: f64, noise_a: f64) -> f64 {
+    (moved.abs() - 3.0 * noise_a).max(0.0)
+}
+
 /// Returns the budget of a current in multiples of `unit_a` amperes. `moved` is the difference of two successive
 /// readings, A, which bounds what has yet to settle.
 pub fn current(range: &CurrentRange, ampere: f64, moved: f64, unit_a: f64) -> Budget {
     let meter = &range.meter;
+    let noise_a = meter.noise_over(range.periods);
     Budget::default()
         .with_bounds("gain", meter.gain(ampere) / unit_a)
         .with_bounds("offset", meter.offset / unit_a)
-        .with_bounds("settling", moved / unit_a)
-        .with_random("noise", meter.noise_over(range.periods) / unit_a)
+        .with_bounds("settling", beyond(moved, noise_a) / unit_a)
+        .with_random("noise", noise_a / unit_a)
 }
 
 /// Returns the budget of a leakage, microamperes; the test subtracts the current of the open fixture when it is known.
@@ -42,8 +54,8 @@ pub fn leakage(
         return budget.with_bounds("source", share * ampere / 1e-6);
     }
     let noise_a = range.meter.noise_over(range.periods);
-    // The first of both readings is short and noisy: only more than its noise shows a current that settles.
-    let moved = (moved.abs() - 3.0 * range.meter.noise_over(BRIEF)).max(0.0);
+    // The first of both readings is short and noisy.
+    let moved = beyond(moved, range.meter.noise_over(BRIEF));
     Budget::default()
         .with_bounds("gain", range.meter.gain(ampere) / 1e-6)
         .with_bounds("source", share * ampere / 1e-6)
@@ -77,17 +89,15 @@ pub fn time(plan: &Plan, step_s: f64, control: &Crossing, output: &Crossing) -> 
 }
 
 /// Returns the budget of a resistance, milliohms, from the drops at half and at full current. The offsets of source and
-/// meter are the same at both and cancel. `heated_v` is the rise of the drop by heat during the measurement, V. In the
-/// first reading the part is warmer than before the measurement, in the last one warmer than its current alone makes
-/// it. These two errors mostly cancel: half of the rise is left when the time constant of the junction is 10 to 40 ms.
-pub fn resistance(plan: &DcPlan, ohm: f64, heated_v: f64) -> Budget {
+/// meter are the same at both and cancel. `warmth_v` is the half width of what heat leaves in the drop at half current, V.
+pub fn resistance(plan: &DcPlan, ohm: f64, warmth_v: f64) -> Budget {
     let (source, meter) = (&plan.drop.source, &plan.drop.meter);
     let apart_a = plan.drop_a / 2.0;
-    let noise_v = 2f64.sqrt() * meter.noise_over(1.0);
+    let noise_v = APART * meter.noise_over(1.0);
     Budget::default()
         .with_bounds("voltage gain", meter.gain(ohm) * 1e3)
         .with_bounds("current gain", source.gain(ohm) * 1e3)
-        .with_bounds("heat", heated_v / 2.0 / apart_a * 1e3)
+        .with_bounds("heat", warmth_v / apart_a * 1e3)
         .with_random("noise", noise_v / apart_a * 1e3)
 }
 
@@ -104,9 +114,7 @@ pub fn drop_at_rated(plan: &DcPlan, resistance: &Budget) -> Budget {
 /// Returns the budget, mV, of a rise of the drop by heat; the offset of the meter cancels between the two readings.
 pub fn drift(plan: &DcPlan, rise_v: f64) -> Budget {
     let meter = &plan.drop.meter;
-    let noise_v = meter
-        .noise_over(1.0)
-        .hypot(meter.noise_over(LAST_DROPS as f64));
+    let noise_v = WARMED * meter.noise_over(1.0);
     Budget::default()
         .with_bounds("voltage gain", meter.gain(rise_v) * 1e3)
         .with_random("noise", noise_v * 1e3)

@@ -58,6 +58,8 @@ const TEST: &[Key] = table! {
         "AC parts: pulses of the train, at as many phases of the mains; default 6");
     optional("sampling", Form::Whole { unit: "", low: 1, high: 10_000 }, "station",
         "AC parts: number of parts of a lot of which dc_offset_mv and wave_dist_mv are measured; without it, of all");
+    optional("searched", Form::Whole { unit: "", low: 1, high: 10_000 }, "station",
+        "number of parts of a lot of which a search finds v_on_v and v_off_v; without it, of all");
     key("time_constant_ms", from_to(0.01, 100.0, "ms"), "station",
         "longest time constant of the output; near a threshold it turns on many time constants late");
     key("reverse_v", above_zero(60.0, "V"), "station", "voltage at the reversed control input");

@@ -148,7 +148,13 @@ impl KindCharacteristic for Parameter {
             Self::LeakageResistive => (ErrorUnit::Own, 3.0),
             Self::ZeroCross => (ErrorUnit::Own, 0.5),
             Self::OnResistance => (ErrorUnit::Own, 1.0),
-            Self::LeakageCold | Self::LeakageHot => (ErrorUnit::Own, 0.02),
+            // 20 nA and 1 %.
+            Self::LeakageCold | Self::LeakageHot => {
+                return Some(AcceptedError {
+                    share: 0.01,
+                    ..AcceptedError::of(ErrorUnit::Own, 0.02)
+                });
+            }
             Self::InputCurrent
             | Self::ReverseCurrent
             | Self::LeakageCapacitive
@@ -158,7 +164,7 @@ impl KindCharacteristic for Parameter {
             | Self::HalfWave
             | Self::Drift => return None,
         };
-        Some(AcceptedError { unit, rms })
+        Some(AcceptedError::of(unit, rms))
     }
 }
 

@@ -30,6 +30,8 @@ const USUAL_SMALL_A: f64 = 1e-3;
 const USUAL_DROP_V: f64 = 1.5;
 /// Share of the load current up to which an output counts as blocked where the recipe does not limit its leakage.
 const OFF: f64 = 0.1;
+/// Averaging time of the input current of an AC part, periods of the mains: its noise is far below its limits.
+const HOLD: f64 = 0.1;
 /// Period over which meters average, s: one of 50 Hz mains.
 pub const PERIOD_S: f64 = 0.02;
 
@@ -78,8 +80,8 @@ pub struct Plan {
     pub control_v: f64,
     /// Voltage at the reversed input, V, above 0.
     pub reverse_v: f64,
-    /// True when a search follows the conformity test.
-    pub searches: bool,
+    /// Number of parts of a lot, from the first one on, in which a search follows the conformity test.
+    pub searched: u32,
     /// Width of the interval at which a search ends, V.
     pub resolution_v: f64,
     /// Longest time constant of the output, s.
@@ -212,7 +214,7 @@ impl Plan {
         };
         let hold = match &output {
             OutputPlan::Dc(_) => (on_s.max(off_s) / PERIOD_S).clamp(0.01, 10.0),
-            OutputPlan::Ac(_) => 1.0,
+            OutputPlan::Ac(_) => HOLD,
         };
         let input = ranges.currents(Device::SmuIn, part.control_v, input_a, hold)?;
         let is_bounded = |of: &Parameter| high(*of).is_some();
@@ -220,7 +222,10 @@ impl Plan {
         Ok(Self {
             control_v: part.control_v,
             reverse_v: test.reverse_v,
-            searches: test.method == Method::Bisect,
+            searched: match test.method {
+                Method::Conformity => 0,
+                Method::Bisect => test.searched.unwrap_or(u32::MAX),
+            },
             resolution_v: test.resolution_mv / 1e3,
             time_constant_s,
             turn_on_v: high(Parameter::TurnOnVoltage),

@@ -3,6 +3,7 @@
 use super::ac_plan::{self, AcPlan, Scales};
 use super::plan::{CurrentRange, DcPlan, LOAD_V, PERIOD_S, PULSE_OHM, Plan};
 use super::points::{Device, Points};
+use super::wave::staircase::Levels;
 use crate::instrument::query::Query;
 
 /// Channel of the digitizer at the control input.
@@ -90,6 +91,18 @@ impl Points {
     /// Sets another voltage in the same ranges.
     pub fn level(&self, device: Device, level_v: f64) -> Query {
         self.query(device, "level", &[("level_v", level_v)])
+    }
+
+    /// Runs a staircase of the control voltage, `dwell_s` at each level besides the reading of its current.
+    pub fn staircase(&self, levels: &Levels, dwell_s: f64) -> Query {
+        let arguments = [
+            ("from_v", levels.first_v),
+            ("to_v", levels.last_v()),
+            ("step_v", levels.step_v.abs()),
+            ("dwell_s", dwell_s),
+            ("points", levels.count as f64),
+        ];
+        self.query(Device::SmuIn, "ramp", &arguments)
     }
 
     /// Holds `before_v` for one reading, then sets `level_v`.

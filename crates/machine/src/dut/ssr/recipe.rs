@@ -124,6 +124,9 @@ pub struct TestPlan {
     /// absent.
     #[serde(default)]
     pub sampling: Option<u32>,
+    /// Number of parts of a lot whose thresholds a search finds; `None` for all parts.
+    #[serde(default)]
+    pub searched: Option<u32>,
     /// Longest time constant of the output, ms.
     pub time_constant_ms: f64,
     /// Voltage at the reversed control input, V.

@@ -22,8 +22,23 @@ pub struct References {
     pub ratio: Admittance,
     /// Admittance of the fixture without a part.
     pub stray: Admittance,
+    /// Noise of the values above.
+    pub doubt: Doubt,
     /// Time of the measurement.
     pub at: RigTime,
+}
+
+/// Noise of the references: the same error in every part that they correct.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Doubt {
+    /// Standard uncertainty of the ratio, as a share.
+    pub ratio: f64,
+    /// Standard uncertainty of the current of the fixture at the nominal voltage, A.
+    pub stray_a: f64,
+    /// Standard uncertainty of the zero of the clamped channel, V, and (the next field) of the shunt channel in the loop.
+    pub zero_v: f64,
+    /// See `zero_v`.
+    pub shunt_zero_v: f64,
 }
 
 /// Currents through the fixture without a part at the rated voltage of a DC part, A: offset of the meter and

@@ -1,6 +1,7 @@
 //! Search of a threshold of the control voltage, from an interval that holds it to a narrow one.
 //!
-//! Without expectation each step halves the interval. With one, the first step tries the expected voltage and the next
+//! An AC part takes staircases ([`super::wave::staircase`]), which divide the interval into many levels at once. For a DC
+//! part, without expectation each step halves the interval. With one, the first step tries the expected voltage and the next
 //! ones go from there towards the threshold, each twice as far, until both ends have been tried; then steps halve.
 
 /// Direction in which the control voltage passes the threshold.
@@ -86,6 +87,26 @@ impl Search {
         }
         self.tried += 1;
         self.conducted = Some(conducts);
+    }
+
+    /// Returns the voltages between which a staircase looks for the threshold: around the expected one at first, then the
+    /// whole interval.
+    pub fn window(&self) -> (f64, f64) {
+        let expected = self.expected.filter(|_| self.tried == 0);
+        let around = expected.map(|it| (it.at_v - it.reach_v, it.at_v + it.reach_v));
+        let (low_v, high_v) = around.unwrap_or((self.low_v, self.high_v));
+        let window = (low_v.max(self.low_v), high_v.min(self.high_v));
+        match window.0 < window.1 {
+            true => window,
+            false => (self.low_v, self.high_v),
+        }
+    }
+
+    /// Narrows the interval to levels of a staircase: the output blocks at `low_v` and conducts at `high_v`.
+    pub fn narrow_to(&mut self, low_v: Option<f64>, high_v: Option<f64>) {
+        self.low_v = low_v.map_or(self.low_v, |it| it.max(self.low_v));
+        self.high_v = high_v.map_or(self.high_v, |it| it.min(self.high_v));
+        self.tried += 1;
     }
 
     /// Returns true when the last step has left the output as each step must find it: blocked for a rising search,

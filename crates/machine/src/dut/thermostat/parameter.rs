@@ -66,8 +66,7 @@ impl KindCharacteristic for Parameter {
             Self::Contact => 1.5,
             Self::Creep | Self::Chatter | Self::Repeatability => return None,
         };
-        let unit = ErrorUnit::Own;
-        Some(AcceptedError { unit, rms })
+        Some(AcceptedError::of(ErrorUnit::Own, rms))
     }
 }
 

@@ -20,6 +20,9 @@ use triac::Gate;
 
 /// Longest time between two events, microseconds.
 const LONGEST_US: f64 = 20_000.0;
+/// The same while the output conducts: a small part of the time in which its junction warms, because between two events
+/// its temperature does not change.
+const WARMS_US: f64 = 1_000.0;
 
 /// Marks that no state has been computed.
 const UNKNOWN: (f64, State) = (
@@ -168,7 +171,11 @@ impl SsrBoard {
         circuit.known.set(UNKNOWN);
         let light_us = part.and_then(|it| it.switch_us(circuit.goal));
         let edge_us = self.pulse.edge_us(self.now_us);
-        let next_us = [light_us, edge_us, Some(LONGEST_US)].into_iter().flatten();
+        let longest_us = match circuit.segment.on() {
+            Some(_) => WARMS_US,
+            None => LONGEST_US,
+        };
+        let next_us = [light_us, edge_us, Some(longest_us)].into_iter().flatten();
         let next_us = self.now_us + next_us.fold(f64::INFINITY, f64::min).max(EDGE_US);
         let span = (self.now_us, next_us.min(cycle.end_us()));
         let own_us = triac.and_then(|it| circuit.own_event_us(it, span));

@@ -86,11 +86,11 @@ impl DcStage {
 }
 
 /// Returns the stages that a good part passes behind the checks of every part.
-pub fn order(plan: &Plan, is_referenced: bool) -> Vec<Stage> {
+pub fn order(plan: &Plan, is_referenced: bool, is_searched: bool) -> Vec<Stage> {
     let open = (!is_referenced).then_some(DcStage::OpenFixture);
     let conducts = plan.turn_on_v.map(|_| DcStage::Conducts);
     let searches = [Direction::Rising, Direction::Falling].map(DcStage::Threshold);
-    let searches = searches.into_iter().filter(|_| plan.searches);
+    let searches = searches.into_iter().filter(|_| is_searched);
     let first = [DcStage::ColdLeakage, DcStage::Blocks];
     let last = [DcStage::Timing, DcStage::Resistance, DcStage::HotLeakage];
     let all = open

@@ -108,14 +108,45 @@ fn a_dead_line_fails_no_part() {
     }
     bench.part.dead_from = usize::MAX;
     assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
-    // Both leakages and the turn-off show it; a train finds no mains.
-    let blind = void("ssr_pulse_not_recorded", "");
-    for (record, expected) in [&dead, &dead, &blind, &blind, &dead]
-        .into_iter()
-        .enumerate()
-    {
+    // Leakage, turn-off, turn-on (which the train finds), train, leakage again.
+    for record in 0..5 {
         bench.part.dead_from = bench.line_records + record;
-        assert_eq!(ended(&bench.tested(false)), *expected, "record {record}");
+        assert_eq!(ended(&bench.tested(false)), dead, "record {record}");
+    }
+}
+
+#[test]
+fn a_line_that_dies_in_a_train_fails_no_part() {
+    const TRAIN: usize = 3;
+    for threshold_v in [0.85, 0.01] {
+        let part = changed(|it| it.threshold_v = threshold_v);
+        let mut bench = LineBench::with(part, &recipe(ZERO_CROSS, &[]));
+        assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
+        for dies_ms in (1..190).step_by(7) {
+            bench.part.dead_from = bench.line_records + TRAIN;
+            bench.part.dies_s = f64::from(dies_ms) / 1e3;
+            let ended = ended(&bench.tested(false));
+            assert_eq!(ended, void("ssr_line_dead", ""), "after {dies_ms} ms");
+        }
+    }
+}
+
+#[test]
+fn a_line_that_dies_in_a_leakage_fails_no_part() {
+    for record in [0, 4] {
+        for dies_ms in (1..60).step_by(4) {
+            let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &[]));
+            assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
+            bench.part.dead_from = bench.line_records + record;
+            bench.part.dies_s = f64::from(dies_ms) / 1e3;
+            let test = bench.tested(false);
+            assert_eq!(
+                test.verdict().name(),
+                "void",
+                "{dies_ms} ms: {:?}",
+                ended(&test)
+            );
+        }
     }
 }
 
@@ -165,5 +196,41 @@ fn sampled_characteristics_are_measured_on_their_parts_alone() {
         assert_eq!(found, is_measured, "after {judged} parts");
         assert!(test.record().result(Parameter::Drop).is_some());
         assert_eq!(test.verdict().name(), "pass", "{:?}", test.verdict());
+    }
+}
+
+#[test]
+fn staircases_find_both_thresholds() {
+    const LEAST_V: f64 = 1.004;
+    for zero_cross in [true, false] {
+        let all = [("searched = 3 ", "searched = 99 ")];
+        let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &all));
+        bench.part.zero_cross = zero_cross;
+        // The sixth part and the next ones begin near what the others have shown, the last one does not fit them.
+        let thresholds = [2.4, 2.31, 2.43, 2.39, 2.52, 2.41, 2.46, LEAST_V + 0.2, 2.95];
+        for turn_on_v in thresholds {
+            (bench.part.turn_on_v, bench.part.turn_off_v) = (turn_on_v, turn_on_v - 0.19);
+            let test = bench.tested(false);
+            for (of, truth) in [
+                (Parameter::TurnOnVoltage, turn_on_v),
+                (Parameter::TurnOffVoltage, turn_on_v - 0.19),
+            ] {
+                let reading = test.record().result(of).unwrap();
+                let error = (reading.value - truth).abs();
+                assert!(error < 0.0126, "{of:?}: {}, {truth}", reading.value);
+                assert!(error < 1.1 * reading.expanded(), "{reading:?}, {truth}");
+            }
+        }
+    }
+}
+
+#[test]
+fn only_the_first_parts_are_searched() {
+    let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &[]));
+    for number in 0..6 {
+        let test = bench.tested(false);
+        let found = test.record().result(Parameter::TurnOnVoltage);
+        assert_eq!(found.is_some(), number < 3, "part {number}");
+        assert_eq!(test.verdict(), Verdict::Pass);
     }
 }

@@ -74,7 +74,9 @@ impl Test {
             OutputPlan::Dc(_) => open.is_some(),
             OutputPlan::Ac(_) => references.is_some(),
         };
-        let mut stages: VecDeque<Stage> = stage::order(&device.plan, is_referenced).into();
+        let is_searched = device.judged < device.plan.searched;
+        let stages = stage::order(&device.plan, is_referenced, is_searched);
+        let mut stages = VecDeque::from(stages);
         stages.extend([Stage::SourcesOff, Stage::Discharge]);
         let mut state = State {
             learned: device.learned,
@@ -99,7 +101,7 @@ impl Test {
     }
 
     fn enter(&mut self, stage: Stage, now: RigTime) {
-        if stage != self.stage {
+        if stage.repeated() != self.stage.repeated() {
             self.repeats_left = None;
         }
         self.stage = stage;
@@ -148,7 +150,7 @@ impl Test {
         } else if let Next::Insert(stage) = next {
             self.stages.push_front(stage);
         } else if self.repeats() {
-            self.stages.push_front(self.stage);
+            self.stages.push_front(self.stage.repeated());
         }
     }
 

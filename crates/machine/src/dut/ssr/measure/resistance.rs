@@ -4,17 +4,22 @@ use super::board::{self, Position};
 use super::given::{Given, NotDelivered};
 use super::state::{Next, State};
 use crate::dut::ssr::Finding;
-use crate::dut::ssr::accuracy::{self, LAST_DROPS};
+use crate::dut::ssr::accuracy;
 use crate::dut::ssr::parameter::Parameter;
-use crate::dut::ssr::plan::{DcPlan, Plan};
+use crate::dut::ssr::plan::{DcPlan, PERIOD_S, Plan};
 use crate::dut::ssr::points::{Device, Points};
 use crate::dut::ssr::program::drop_count;
+use crate::dut::ssr::wave::warming;
 use crate::instrument::act::Act;
 use units::{Span, Unit};
 
 /// Share of the voltage limit from which a drop shows that the source limits its voltage and keeps less than the
 /// commanded current.
 const LIMITED: f64 = 0.98;
+/// Times after the begin of the current between which the drift counts, s.
+const DRIFT_S: [f64; 2] = [0.01, 0.2];
+/// Time from the half current to its reading, periods of the mains: least and greatest.
+const AFTER: [f64; 2] = [0.0, 0.2];
 
 /// Returns the acts: the input at its nominal voltage, the full current over time from the cold part on, then half of it.
 pub fn acts(state: &mut State, plan: &Plan, dc: &DcPlan, points: &Points) -> Vec<Act> {
@@ -46,9 +51,9 @@ pub fn conclude(
     let ([half_v], Some((_, drops))) = (half, full.split_first()) else {
         return Err(NotDelivered(device));
     };
-    let (Some(first_v), true) = (drops.first(), drops.len() == drop_count()) else {
+    if drops.len() != drop_count() {
         return Err(NotDelivered(device));
-    };
+    }
     let most_v = drops.iter().copied().fold(*half_v, f64::max);
     if most_v >= LIMITED * dc.drop.meter.full_scale {
         // Without a limit of the resistance, a reading over range fails no part.
@@ -57,10 +62,15 @@ pub fn conclude(
         }
         return Ok(Next::Planned);
     }
-    let last = &drops[drops.len() - LAST_DROPS..];
-    let rise_v = last.iter().sum::<f64>() / LAST_DROPS as f64 - first_v;
-    let ohm = (first_v - half_v) / (dc.drop_a / 2.0);
-    let of_ohm = accuracy::resistance(dc, ohm, rise_v);
+    let course = warming::course(drops).ok_or(NotDelivered(device))?;
+    let (cold_v, warm_v) = (course.at(0.0), course.at(drops.len() as f64));
+    let rise_v = course.at(DRIFT_S[1] / PERIOD_S) - course.at(DRIFT_S[0] / PERIOD_S);
+    // Half of the current makes a quarter of the heat; the rest of the junction's heat decays.
+    let warmth = |left: f64| 0.5 * (warm_v - cold_v) * (0.25 + 0.75 * left);
+    let [soon_v, late_v] = AFTER.map(|it| warmth(course.left(it)));
+    let half_v = half_v - f64::midpoint(soon_v, late_v);
+    let ohm = (cold_v - half_v) / (dc.drop_a / 2.0);
+    let of_ohm = accuracy::resistance(dc, ohm, (soon_v - late_v) / 2.0);
     let of_drop = accuracy::drop_at_rated(dc, &of_ohm);
     let of_rise = accuracy::drift(dc, rise_v);
     state.found([

@@ -138,6 +138,14 @@ impl Stage {
         matches!(self, Self::SourcesOff | Self::Discharge)
     }
 
+    /// Returns the stage that a repetition enters: the one that takes the record.
+    pub const fn repeated(self) -> Self {
+        match self {
+            Self::Ac(stage) => Self::Ac(stage.recorded_by()),
+            other => other,
+        }
+    }
+
     /// Returns the characteristics that a repetition of the stage measures again.
     pub const fn measures(self) -> &'static [Parameter] {
         match self {
@@ -151,10 +159,10 @@ impl Stage {
 
 /// Returns the stages of a good part, without those that end the test, the safe ones first. The stages on the line come
 /// only after those that show an output that blocks 5 V and a sound input.
-pub fn order(plan: &Plan, is_referenced: bool) -> Vec<Stage> {
+pub fn order(plan: &Plan, is_referenced: bool, is_searched: bool) -> Vec<Stage> {
     let own = match &plan.output {
-        OutputPlan::Dc(_) => dc_stage::order(plan, is_referenced),
-        OutputPlan::Ac(_) => ac_stage::order(plan, is_referenced),
+        OutputPlan::Dc(_) => dc_stage::order(plan, is_referenced, is_searched),
+        OutputPlan::Ac(_) => ac_stage::order(is_referenced, is_searched),
     };
     let safe = [Stage::Contact, Stage::Short, Stage::Input];
     safe.into_iter().chain(own).collect()

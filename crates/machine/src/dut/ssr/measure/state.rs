@@ -5,7 +5,7 @@ use super::board::Position;
 use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
 use super::line::stage::AcStage;
-use super::line::{self, Level, conforms, looped, references, train};
+use super::line::{self, Level, conforms, looped, references, staircase, train};
 use super::stage::Stage;
 use super::{conformity, contact, discharge, input, leakage, resistance, threshold, timing};
 use crate::dut::Reason;
@@ -170,8 +170,9 @@ impl State {
             }
             AcStage::Blocks(shift) => conforms::block_acts(self, shift, plan, ac, points),
             AcStage::Conducts(shift) => conforms::conduct_acts(self, shift, plan, ac, points),
-            AcStage::Threshold(way) => threshold::line_acts(self, way, plan, ac, points),
+            AcStage::Threshold(way) => staircase::acts(self, way, plan, ac, points),
             AcStage::Train => train::acts(self, plan, ac, points),
+            AcStage::TrainLine => train::line_acts(ac, points),
             AcStage::LoopReady => line::ready_acts(self, ac, points),
             AcStage::Loop => looped::acts(self, plan, ac, points),
         }
@@ -250,8 +251,9 @@ impl State {
             }
             AcStage::Blocks(shift) => conforms::conclude_blocks(self, shift, plan, ac, given)?,
             AcStage::Conducts(shift) => conforms::conclude_conducts(self, shift, plan, ac, given)?,
-            AcStage::Threshold(way) => threshold::conclude_line(self, way, plan, ac, given)?,
+            AcStage::Threshold(way) => staircase::conclude(self, way, plan, ac, given)?,
             AcStage::Train => train::conclude(self, plan, ac, given)?,
+            AcStage::TrainLine => train::conclude_line(self, plan, ac, given)?,
             AcStage::LoopReady => line::conclude_ready(self, ac, given),
             AcStage::Loop => looped::conclude(self, plan, ac, given)?,
         })

@@ -1,15 +1,11 @@
-//! Turn-on and turn-off voltage by a search. The output switches with hysteresis, so each step begins from 0 V, or
-//! from the nominal voltage for the turn-off.
+//! Turn-on and turn-off voltage of a DC part by a search. The output switches with hysteresis, so each step begins from
+//! 0 V, or from the nominal voltage for the turn-off.
 
 use super::conformity::{is_off, is_on};
 use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
-use super::line::conforms::{self, Conducting};
-use super::line::stage::AcStage;
 use super::stage::Stage;
 use super::state::{Next, State};
-use crate::dut::Reason;
-use crate::dut::ssr::ac_plan::AcPlan;
 use crate::dut::ssr::accuracy;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
@@ -21,6 +17,8 @@ use units::Unit;
 
 /// Most steps of a search; one without expectation takes twelve from 40 V to 10 mV.
 const MOST_STEPS: u32 = 20;
+/// Excess of a width by rounding alone, V.
+const ROUNDING_V: f64 = 1e-9;
 
 /// Returns the acts of one step; none when no interval is proven to hold the threshold.
 pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Points) -> Vec<Act> {
@@ -44,66 +42,9 @@ pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Point
     ]
 }
 
-/// Returns the acts of one search step of an AC part; a few half cycles decide it.
-pub fn line_acts(
-    state: &mut State,
-    direction: Direction,
-    plan: &Plan,
-    ac: &AcPlan,
-    points: &Points,
-) -> Vec<Act> {
-    let Some(search) = state.search.or_else(|| interval(state, direction, plan)) else {
-        return Vec::new();
-    };
-    state.search = Some(search);
-    match direction {
-        Direction::Rising => {
-            conforms::rising_acts(state, (search.next_v(), on_s(plan)), plan, ac, points)
-        }
-        Direction::Falling => {
-            conforms::falling_acts(state, (search.next_v(), off_s(plan)), plan, ac, points)
-        }
-    }
-}
-
-/// Returns the time that a search gives an AC part to conduct, s: longer than the limit, because a part near its
-/// threshold is late.
-fn on_s(plan: &Plan) -> f64 {
-    plan.on_s + plan.dwell().as_seconds()
-}
-
-/// Returns the time that a search gives an AC part to block, s.
-fn off_s(plan: &Plan) -> f64 {
-    plan.off_s + plan.dwell().as_seconds()
-}
-
-/// Concludes one search step of an AC part.
-pub fn conclude_line(
-    state: &mut State,
-    direction: Direction,
-    plan: &Plan,
-    ac: &AcPlan,
-    given: &Given,
-) -> Result<Next, Reason> {
-    let Some(search) = state.search else {
-        return Ok(Next::Planned);
-    };
-    let conducts = match direction {
-        Direction::Rising => conforms::conducting(ac, given, on_s(plan))? == Conducting::Both,
-        Direction::Falling => !conforms::blocks(ac, given, off_s(plan))?,
-    };
-    let again = Stage::Ac(AcStage::Threshold(direction));
-    Ok(narrowed(
-        state,
-        (search, conducts),
-        (direction, again),
-        plan,
-    ))
-}
-
 /// Returns the interval that holds the threshold: the output is proven to block at its lower end and to conduct at its
 /// upper end.
-fn interval(state: &State, direction: Direction, plan: &Plan) -> Option<Search> {
+pub fn interval(state: &State, direction: Direction, plan: &Plan) -> Option<Search> {
     let obeys = |of| state.proof(of).unwrap_or(Judgement::Pass) == Judgement::Pass;
     if !obeys(Parameter::TurnOnVoltage) || !obeys(Parameter::TurnOffVoltage) {
         return None;
@@ -120,34 +61,33 @@ fn interval(state: &State, direction: Direction, plan: &Plan) -> Option<Search> 
     })
 }
 
-/// Concludes one step; after the last one the threshold is known.
+/// Concludes one step.
 pub fn conclude(
     state: &mut State,
     direction: Direction,
     plan: &Plan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
-    let Some(search) = state.search else {
+    let Some(mut search) = state.search else {
         return Ok(Next::Planned);
     };
     let [ampere] = given.singles(Device::SmuOut)?;
     let again = Stage::Dc(DcStage::Threshold(direction));
-    let is_on = match direction {
+    search.narrow(match direction {
         Direction::Rising => is_on(ampere),
         Direction::Falling => !is_off(ampere),
-    };
-    Ok(narrowed(state, (search, is_on), (direction, again), plan))
+    });
+    Ok(narrowed(state, search, (direction, again), plan))
 }
 
-/// Narrows the interval of a search, depending on whether the output conducted; `again` is the stage of the next step.
-fn narrowed(
+/// Goes on with a narrowed search; `again` is the stage of its next step. After the last one the threshold is known.
+pub fn narrowed(
     state: &mut State,
-    (mut search, conducts): (Search, bool),
+    search: Search,
     (direction, again): (Direction, Stage),
     plan: &Plan,
 ) -> Next {
-    search.narrow(conducts);
-    if search.width_v() > plan.resolution_v && search.tried < MOST_STEPS {
+    if search.width_v() > plan.resolution_v + ROUNDING_V && search.tried < MOST_STEPS {
         state.search = Some(search);
         return Next::Insert(again);
     }

@@ -51,15 +51,15 @@ pub struct LineBench {
     smu_v: f64,
     /// Steps of the control voltage: instant and volts.
     control: Vec<(f64, f64)>,
-    scales: [f64; 3],
+    scales: [f64; 4],
     record: (f64, f64, f64),
     begins_s: Option<f64>,
     falls: bool,
     train: (f64, f64, f64, f64),
     memory: Vec<Vec<f32>>,
-    /// Number of records on the line so far, and whether the present one shows it dead.
+    /// Number of records on the line so far, and the instant from which on the present one shows it dead.
     pub line_records: usize,
-    is_dead: bool,
+    dead_s: f64,
     /// True once the output conducts for good.
     has_stuck: bool,
     seed: u64,
@@ -92,14 +92,14 @@ impl LineBench {
             level_v: 230.0,
             smu_v: 0.0,
             control: Vec::new(),
-            scales: [1.0; 3],
+            scales: [1.0; 4],
             record: (0.0, 1.0, 0.0),
             begins_s: None,
             falls: false,
             train: (0.0, 1.0, 0.0, 0.0),
             memory: Vec::new(),
             line_records: 0,
-            is_dead: false,
+            dead_s: f64::INFINITY,
             has_stuck: false,
             seed: 1,
         }
@@ -269,6 +269,16 @@ impl LineBench {
                 };
                 vec![ampere.min(given("limit_a")); 2]
             }
+            (Device::SmuIn, "ramp") => {
+                let (from_v, to_v) = (given("from_v"), given("to_v"));
+                let count = given("points") as usize;
+                let step_v = given("step_v").copysign(to_v - from_v);
+                for level in 0..count {
+                    self.control_to(from_v + step_v * level as f64);
+                    self.now = self.now + Span::seconds(given("dwell_s") + 2e-4);
+                }
+                vec![0.0; 2 * count]
+            }
             (Device::SmuIn, "off") => {
                 self.control_to(0.0);
                 Vec::new()
@@ -312,6 +322,7 @@ impl LineBench {
                 self.falls = query.program == "capture_all_falling";
                 let scale = |name| given(name) * 4.0;
                 self.scales = [
+                    scale("control_v_per_div"),
                     scale("divided_v_per_div"),
                     scale("output_v_per_div"),
                     scale("shunt_v_per_div"),
@@ -333,7 +344,7 @@ impl LineBench {
                 Vec::new()
             }
             (Device::Digitizer, "waveform") => {
-                let volts = self.memory[given("channel") as usize - 2].clone();
+                let volts = self.memory[given("channel") as usize - 1].clone();
                 let step_s = self.record.0 / self.record.1;
                 return Delivered {
                     numbers: Vec::new(),

@@ -9,14 +9,21 @@ pub struct DropLine {
     pub threshold_v: f64,
     /// Rise of the drop with the current, ohm.
     pub ohm: f64,
-    /// Standard uncertainty of the drop at the mean of the fitted currents, V.
-    pub u_v: f64,
+    /// Mean of the fitted currents, A.
+    middle_a: f64,
+    /// Standard uncertainty from noise of the drop at that mean, V, and of `ohm`.
+    u: (f64, f64),
 }
 
 impl DropLine {
     /// Returns the drop at a current, V.
     pub fn at(&self, ampere: f64) -> f64 {
         self.threshold_v + self.ohm * ampere
+    }
+
+    /// Returns the standard uncertainty of the drop at a current from noise, V.
+    pub fn u_at(&self, ampere: f64) -> f64 {
+        self.u.0.hypot(self.u.1 * (ampere - self.middle_a))
     }
 
     /// Returns the rms of the drop for a sinusoidal current with this amplitude, V: the integral of `(v0 + r |i|)^2` in
@@ -33,13 +40,16 @@ impl DropLine {
 /// Fits drops (current in A, drop in V) of one polarity, both positive; takes only currents above `least_a`.
 pub fn fit(samples: impl Iterator<Item = (f64, f64)>, least_a: f64) -> Option<DropLine> {
     let mut sums = Sums::<2>::default();
+    let mut sum_a = 0.0;
     for (ampere, volts) in samples.filter(|(ampere, _)| *ampere > least_a) {
         sums.add([1.0, ampere], volts);
+        sum_a += ampere;
     }
-    let solution = sums.solve()?;
+    let (solution, count) = (sums.solve()?, sums.count() as f64);
     Some(DropLine {
         threshold_v: solution.of[0],
         ohm: solution.of[1],
-        u_v: solution.residual / (sums.count() as f64).sqrt(),
+        middle_a: sum_a / count,
+        u: (solution.residual / count.sqrt(), solution.u[1]),
     })
 }

@@ -23,6 +23,8 @@ pub struct Mains {
     terms: [[f64; 2]; 3],
     /// Standard deviation of the samples around the fit.
     pub residual: f64,
+    /// Standard uncertainty of sine or cosine of the fundamental from noise.
+    pub u: f64,
 }
 
 impl Mains {
@@ -35,6 +37,7 @@ impl Mains {
             offset: 0.0,
             terms: [[0.0; 2]; 3],
             residual: 0.0,
+            u: 0.0,
         };
         for round in 0..ROUNDS {
             fit = fit.refined(samples.clone(), middle_s, round > 0)?;
@@ -76,6 +79,7 @@ impl Mains {
             offset,
             terms: [[s1, c1], [s3, c3], [s5, c5]],
             residual: solution.residual,
+            u: solution.u[1].max(solution.u[2]),
         };
         Some(fitted.shifted(-middle_s))
     }

@@ -9,12 +9,15 @@
 //! | the instant at which the voltage jumps from the mains to the drop | [`turn`] |
 //! | resistive and capacitive part of a current | [`split`] |
 //! | drop against current | [`drop_line`] |
+//! | drop while a current warms the part | [`warming`] |
+//! | the level of a staircase at which the output turns on or off | [`staircase`] |
 
 pub mod drop_line;
 pub mod least_squares;
 pub mod mains;
 pub mod pulses;
 pub mod split;
+pub mod staircase;
 pub mod turn;
 pub mod warming;
 
@@ -31,6 +34,18 @@ pub fn tail(waveform: &Waveform, from_s: f64) -> Waveform {
         step_s: waveform.step_s,
         volts: waveform.volts[first..].to_vec(),
     }
+}
+
+/// Returns the standard uncertainty that jumps give the mean of samples: each lies anywhere between its two samples. What a
+/// step exceeds the mean of its neighbours by is a jump, of which each neighbour shows another half.
+pub fn jumps_u(samples: &[f64]) -> f64 {
+    const OF_ALL: f64 = 12.0 * (1.0 + 0.25 + 0.25);
+    let steps: Vec<f64> = samples.windows(2).map(|it| it[1] - it[0]).collect();
+    let jumps = steps
+        .windows(3)
+        .map(|it| it[1] - f64::midpoint(it[0], it[2]));
+    let squares: f64 = jumps.map(|it| it * it).sum();
+    (squares / OF_ALL).sqrt() / samples.len().max(1) as f64
 }
 
 /// One channel of a record, borrowed: samples at equal intervals, each multiplied by a factor, minus an offset.

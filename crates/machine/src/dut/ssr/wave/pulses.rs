@@ -19,6 +19,8 @@ const AMBIGUOUS_S: f64 = 0.4e-3;
 const OFF_S: f64 = 1e-3;
 /// Time for which an output must conduct without a break before it counts as on, s.
 const CONDUCTS_S: f64 = 10e-6;
+/// Voltage below which neither the mains nor the drop of a triac shows, V.
+const SILENT_V: f64 = 0.3;
 /// Time before and after a zero of the mains in which an output fires again, s.
 const AGAIN_S: f64 = 0.8e-3;
 
@@ -114,6 +116,13 @@ impl Output<'_> {
         (2.0 * self.on_v / slope / self.divided.step_s).ceil() as usize
     }
 
+    /// Returns true when neither mains nor the drop of a triac shows for this time without a break.
+    pub fn is_silent(&self, for_s: f64) -> bool {
+        let count = (for_s / self.divided.step_s).ceil() as usize;
+        let is_low = |it: usize| self.at(it).abs() < SILENT_V;
+        run_from(is_low, (0, self.divided.len()), count).is_some()
+    }
+
     /// Finds the answer to a pulse.
     pub fn answer(&self, mains: &Mains, pulse: Pulse) -> Answer {
         let on = self.turn_on(mains, &pulse);
@@ -152,7 +161,8 @@ impl Output<'_> {
     }
 
     /// Returns the peak after each zero of the mains, from the turn-on to the falling edge. The true peak lies between
-    /// two samples, on average half an interval above the greatest one.
+    /// two samples, on average half of the last rise above the greatest one: a snubber makes the output rise slower than
+    /// the mains.
     fn again(&self, mains: &Mains, pulse: &Pulse, on_s: f64) -> Vec<f64> {
         let channel = &self.clamped;
         let mut peaks = Vec::new();
@@ -162,13 +172,16 @@ impl Output<'_> {
                 channel.index(zero_s - AGAIN_S),
                 channel.index(zero_s + AGAIN_S),
             );
-            let peak_v = (from..to).map(|it| self.at(it).abs()).fold(0.0, f64::max);
-            let rest_v = mains.slope(zero_s).abs() * channel.step_s / 2.0;
-            peaks.push(if peak_v > self.on_v / 2.0 {
-                peak_v + rest_v
-            } else {
-                peak_v
-            });
+            let size_v = |it: usize| self.at(it).abs();
+            let peak = (from..to).max_by(|one, other| size_v(*one).total_cmp(&size_v(*other)));
+            peaks.extend(peak.map(|it| {
+                let peak_v = size_v(it);
+                let rest_v = (peak_v - size_v(it.saturating_sub(1))).max(0.0) / 2.0;
+                match peak_v > self.on_v / 2.0 {
+                    true => peak_v + rest_v,
+                    false => peak_v,
+                }
+            }));
             zero_s += mains.half_s();
         }
         peaks

@@ -36,6 +36,12 @@ impl Course {
     pub fn at(&self, times: f64) -> f64 {
         self.end + self.rest * self.ratio.powf(times)
     }
+
+    /// Returns the share of a warming that is left after its end: the mean over one of the equal times, which begins
+    /// `after` of them later.
+    pub fn left(&self, after: f64) -> f64 {
+        self.ratio.powf(after) * (1.0 - self.ratio) / -self.ratio.ln()
+    }
 }
 
 /// Fits final value and first distance by least squares, for a distance that each time multiplies by `ratio`.

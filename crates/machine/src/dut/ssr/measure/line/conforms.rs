@@ -38,7 +38,7 @@ const LATE_S: f64 = 0.2;
 
 /// Polarities that conduct in a period of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Conducting {
+enum Conducting {
     /// Both.
     Both,
     /// One.
@@ -75,7 +75,7 @@ pub fn block_acts(
 
 /// Returns the acts that let the part conduct at its nominal voltage for a period and record its answer to a step down
 /// to a level, from the step on. The part must block from `within_s` after the step on.
-pub fn falling_acts(
+fn falling_acts(
     state: &mut State,
     (level_v, within_s): (f64, f64),
     plan: &Plan,
@@ -89,7 +89,7 @@ pub fn falling_acts(
             points.source(Device::SmuIn, plan.control_v, &plan.input),
             points.capture_step(plan, &scales, (plan.control_v, level_v)),
         ]),
-        Act::Wait(Span::seconds(2.0 * ac.half_s())),
+        Act::Wait(Span::seconds(plan.on_s.max(ac.half_s()))),
         Act::Query(vec![points.level(Device::SmuIn, level_v)]),
     ]);
     acts.extend(recorded(&scales, &[DIVIDED_CHANNEL, SHUNT_CHANNEL], points));
@@ -98,7 +98,7 @@ pub fn falling_acts(
 
 /// Returns true when the record of the digitizer shows an output that blocks from `from_s` after its trigger on; fails
 /// with the reason when the line shows nothing of the output.
-pub fn blocks(ac: &AcPlan, given: &Given, from_s: f64) -> Result<bool, Reason> {
+fn blocks(ac: &AcPlan, given: &Given, from_s: f64) -> Result<bool, Reason> {
     let all: [_; 2] = given.waveforms()?;
     let [divided, shunt] = all.map(|it| tail(&it, from_s));
     let seen = seen(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))?;
@@ -192,7 +192,7 @@ fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Ve
 
 /// Returns the acts that step the control from 0 V to a level and record the output from the step on. The output must
 /// conduct from `within_s` after the step on.
-pub fn rising_acts(
+fn rising_acts(
     state: &mut State,
     (level_v, within_s): (f64, f64),
     plan: &Plan,
@@ -227,7 +227,7 @@ fn recorded(scales: &Scales, channels: &[f64], points: &Points) -> [Act; 2] {
 }
 
 /// Returns which polarities conduct in the period from `from_s` after the trigger of a record on.
-pub fn conducting(ac: &AcPlan, given: &Given, from_s: f64) -> Result<Conducting, NotDelivered> {
+fn conducting(ac: &AcPlan, given: &Given, from_s: f64) -> Result<Conducting, NotDelivered> {
     let [divided, clamped] = given.waveforms()?;
     of_period(ac, [&divided, &clamped], from_s).ok_or(NotDelivered(Device::Digitizer))
 }

@@ -13,7 +13,7 @@ use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
 use crate::dut::ssr::program::{DIVIDED_CHANNEL, SHUNT_CHANNEL};
-use crate::dut::ssr::references::References;
+use crate::dut::ssr::references::{Doubt, References};
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::mains::Mains;
 use crate::dut::ssr::wave::split::{Admittance, Phasor, phasor};
@@ -23,6 +23,8 @@ use units::{Span, Unit};
 
 /// Least amplitude of the voltage at the output, as a share of the nominal one; the greatest is 2 minus this.
 const BLOCKED: f64 = 0.8;
+/// Rms of the voltage around its fit, as a share of the amplitude: a line that dies within the record leaves more.
+const CURVED: f64 = 0.1;
 /// Divisions from the middle of the screen at which a reading counts as over range.
 const FULL: f64 = 3.9;
 /// A polarity whose peak is below this share of the nominal one and which carries current counts as conducting.
@@ -57,8 +59,8 @@ pub struct Leak {
     pub hz: f64,
     /// Standard uncertainty from noise of either part at the nominal voltage, A.
     pub noise_a: f64,
-    /// True when references have corrected the admittance.
-    pub is_referenced: bool,
+    /// Noise of the references that have corrected the admittance; `None` without them.
+    pub referenced: Option<Doubt>,
 }
 
 /// Returns the acts that take a record of the blocked output with these scales at a control voltage, reached from the
@@ -138,8 +140,11 @@ pub fn seen_at(
     if current.reaches(end_a) {
         return Some(Seen::Beyond);
     }
-    let mains = Mains::fit(volts.pairs(0, volts.len(), 4), ac.mains_hz);
-    let is_near = |it: &Mains| (BLOCKED..2.0 - BLOCKED).contains(&(it.amplitude() / peak_v));
+    let mains = Mains::fit(volts.pairs(0, volts.len(), 1), ac.mains_hz);
+    let is_near = |it: &Mains| {
+        let is_whole = it.residual < CURVED * it.amplitude();
+        is_whole && (BLOCKED..2.0 - BLOCKED).contains(&(it.amplitude() / peak_v))
+    };
     let Some(mains) = mains.filter(is_near) else {
         return Some(Seen::WrongMains);
     };
@@ -148,11 +153,13 @@ pub fn seen_at(
 }
 
 fn leak(ac: &AcPlan, mains: &Mains, phasor: &Phasor) -> Leak {
+    let admittance = Admittance::of(mains, phasor.of);
+    let noise = phasor.u.hypot(admittance.size() * mains.u);
     Leak {
-        admittance: Admittance::of(mains, phasor.of),
+        admittance,
         hz: mains.hz,
-        noise_a: phasor.u / mains.amplitude() * ac.mains_v,
-        is_referenced: false,
+        noise_a: noise / mains.amplitude() * ac.mains_v,
+        referenced: None,
     }
 }
 
@@ -173,7 +180,7 @@ impl Leak {
         };
         Self {
             admittance: references.corrected(self.admittance),
-            is_referenced: true,
+            referenced: Some(references.doubt),
             ..self
         }
     }

@@ -12,20 +12,20 @@ use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
 use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
-use crate::dut::ssr::references::References;
+use crate::dut::ssr::references::{Doubt, References};
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::drop_line::{self, DropLine};
 use crate::dut::ssr::wave::mains::Mains;
-use crate::dut::ssr::wave::{split, warming};
+use crate::dut::ssr::wave::{jumps_u, split, warming};
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{PI, SQRT_2};
 use units::{Span, Unit};
 
 /// Least share of the peak current at which a sample counts for the fit of the drop.
 const LEAST: f64 = 0.3;
-/// Periods at the end of the record whose mean drop ends the drift.
-pub const LATE: usize = 2;
+/// Times after the begin of the current between which the drift counts, s.
+const DRIFT_S: [f64; 2] = [0.01, 0.2];
 /// Share of its range up to which the channel of the drop follows the output.
 const FOLLOWED: f64 = 0.93;
 /// Share of the peak of the current that both polarities reach at least in a whole wave.
@@ -59,7 +59,7 @@ pub struct Drops<'a> {
     /// The fitted sine of the current.
     pub current: Mains,
     rated_peak_a: f64,
-    is_referenced: bool,
+    referenced: Option<Doubt>,
 }
 
 /// Figures of a conducting output, read from the record of a loop.
@@ -71,18 +71,22 @@ pub struct OnState {
     pub rms_v: f64,
     /// Rise of the peak drop from the early to the late time, V.
     pub drift_v: f64,
-    /// Mean of the voltage, V.
-    pub offset_v: f64,
+    /// Mean of the voltage, V, and its standard uncertainty from the samples.
+    pub offset_v: (f64, f64),
     /// Difference of the output voltage from a sine, rms, V.
     pub distortion_v: f64,
-    /// Difference of the charges of both half cycles over their sum.
-    pub unequal: f64,
+    /// Difference of the charges of both half cycles over their sum, and its standard uncertainty from the samples.
+    pub unequal: (f64, f64),
+    /// Whole periods behind both.
+    pub periods: f64,
+    /// Mean size of the current, A.
+    pub mean_a: f64,
     /// Slope resistance of the output, ohm.
     pub ohm: f64,
-    /// Standard uncertainty of the drop from noise, V.
+    /// Standard uncertainty of the drop of one period from noise, V.
     pub noise_v: f64,
-    /// True when references have corrected the voltages.
-    pub is_referenced: bool,
+    /// Noise of the references that have corrected both channels; `None` without them.
+    pub referenced: Option<Doubt>,
 }
 
 impl<'a> Drops<'a> {
@@ -112,7 +116,7 @@ impl<'a> Drops<'a> {
             ampere,
             current,
             rated_peak_a: SQRT_2 * ac.rated_a,
-            is_referenced: references.is_some(),
+            referenced: references.map(|it| it.doubt),
         })
     }
 
@@ -139,12 +143,12 @@ impl<'a> Drops<'a> {
         Some(f64::midpoint(rms(&plus).powi(2), rms(&minus).powi(2)).sqrt())
     }
 
-    /// Returns whole periods that end before the end of the record and begin after the first period.
+    /// Returns whole periods, at least two, that end before the end of the record and begin after the first period.
     fn whole(&self) -> Option<(f64, f64)> {
         let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
         let begins_s = self.current.zero_after(1.0 / self.current.hz);
         let periods = ((last_s - begins_s) * self.current.hz).floor();
-        (periods >= 1.0).then(|| (begins_s, begins_s + periods / self.current.hz))
+        (periods >= 2.0).then(|| (begins_s, begins_s + periods / self.current.hz))
     }
 
     /// Returns the figures of the conducting output; `None` when there are too few samples. The channel of the drop
@@ -154,39 +158,61 @@ impl<'a> Drops<'a> {
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
         let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
         let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
-        let charges = self.charges(whole);
+        let lead_s = self.lead_s()?;
+        let peak_v = |at_s: f64| peak.at((at_s - lead_s) * self.current.hz);
+        let samples = self.volts.index(whole.0)..self.volts.index(whole.1);
+        let clipped = samples.clone().map(|it| self.clipped(it, most_v));
+        let clipped: Vec<f64> = clipped.collect();
+        let ampere: Vec<f64> = samples.map(|it| self.ampere.at(it)).collect();
+        let (unequal, mean_a) = self.unequal(whole);
+        let (peak_a, periods) = (self.rated_peak_a, (whole.1 - whole.0) * self.current.hz);
         Some(OnState {
-            peak_v: peak.at(0.0),
-            rms_v: rms.at(0.0),
-            drift_v: drift_v(&peaks)?,
-            offset_v: self.mean_v(whole),
+            peak_v: peak_v(0.0),
+            rms_v: rms.at(-lead_s * self.current.hz),
+            drift_v: peak_v(DRIFT_S[1]) - peak_v(DRIFT_S[0]),
+            offset_v: (self.mean_v(whole, most_v), jumps_u(&clipped)),
             distortion_v: self.distortion_v(whole, most_v)?,
-            unequal: (charges.0 - charges.1).abs() / (charges.0 + charges.1),
+            unequal: (unequal, jumps_u(&ampere) / mean_a),
+            periods,
+            mean_a,
             ohm: f64::midpoint(plus.ohm, minus.ohm),
-            noise_v: plus.u_v.hypot(minus.u_v) / 2.0,
-            is_referenced: self.is_referenced,
+            noise_v: plus.u_at(peak_a).hypot(minus.u_at(peak_a)) / 2.0 * periods.sqrt(),
+            referenced: self.referenced,
         })
     }
 
-    /// Returns the mean voltage over whole periods, V; the interval at either end counts with its share.
-    fn mean_v(&self, (from_s, to_s): (f64, f64)) -> f64 {
+    /// Returns the mean voltage over whole periods, V; the interval at either end counts with its share. The range of the
+    /// channel ends at voltages whose sizes differ by its offset; `most_v` is below both, so that the peaks of both
+    /// polarities, at which the output waits, cancel.
+    fn mean_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> f64 {
         let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
-        let inner: f64 = (from..to).map(|it| self.volts.at(it)).sum();
+        let at = |it: usize| self.clipped(it, most_v);
+        let inner: f64 = (from..to).map(at).sum();
         let before = (self.volts.time(from) - from_s) / self.volts.step_s;
         let behind = 1.0 - (self.volts.time(to) - to_s) / self.volts.step_s;
-        let at = |it: usize| self.volts.at(it);
         // Sums the trapezoids between the samples, and a part of the interval at either end.
         let sum = inner + (before - 0.5) * at(from) + (behind - 0.5) * at(to.saturating_sub(1));
         sum * self.volts.step_s / (to_s - from_s)
     }
 
-    /// Returns the charges of the positive and of the negative half cycles, A s.
-    fn charges(&self, (from_s, to_s): (f64, f64)) -> (f64, f64) {
-        let (from, to) = (self.ampere.index(from_s), self.ampere.index(to_s));
-        (from..to).fold((0.0, 0.0), |(plus, minus), it| {
-            let ampere = self.ampere.at(it);
-            (plus + ampere.max(0.0), minus - ampere.min(0.0))
-        })
+    fn clipped(&self, index: usize, most_v: f64) -> f64 {
+        self.volts.at(index).clamp(-most_v, most_v)
+    }
+
+    /// Returns the difference of the charges of both polarities over their sum, and the mean size of the current, A. A mains
+    /// that grows makes the polarity greater that comes second, so the result is the mean of two windows, half a period
+    /// apart.
+    fn unequal(&self, (from_s, to_s): (f64, f64)) -> (f64, f64) {
+        let (half_s, period_s) = (self.current.half_s(), 1.0 / self.current.hz);
+        let [one, other] = [0.0, half_s].map(|later_s| {
+            let (from_s, to_s) = (from_s + later_s, to_s - period_s + later_s);
+            let (from, to) = (self.ampere.index(from_s), self.ampere.index(to_s));
+            let all = (from..to).map(|it| self.ampere.at(it));
+            let (sum, size) = all.fold((0.0, 0.0), |(sum, size), it| (sum + it, size + it.abs()));
+            (sum / size, size / (to - from) as f64)
+        });
+        let unequal = f64::midpoint(one.0, other.0).abs();
+        (unequal, f64::midpoint(one.1, other.1))
     }
 
     /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods. The noise of the
@@ -227,6 +253,16 @@ impl<'a> Drops<'a> {
         )
     }
 
+    /// Returns how long the current has warmed the part before [`Self::begins_s`], s; below 0 when its first half cycle is
+    /// not whole. A part of a half cycle counts with its charge.
+    fn lead_s(&self) -> Option<f64> {
+        let period_s = 1.0 / self.current.hz;
+        let to = self.ampere.index(self.begins_s()? + period_s);
+        let size = (0..to).map(|it| self.ampere.at(it).abs());
+        let mean_a = self.current.amplitude() * 2.0 / PI;
+        Some(size.sum::<f64>() * self.ampere.step_s / mean_a - period_s)
+    }
+
     /// Returns a value of each period from the begin of the current on; `of` computes the value between two instants,
     /// s.
     fn periods(&self, of: impl Fn(&Self, (f64, f64)) -> Option<f64>) -> Option<Vec<f64>> {
@@ -240,14 +276,6 @@ impl<'a> Drops<'a> {
         });
         each.collect()
     }
-}
-
-/// Returns the rise of the drop from 10 ms to 200 ms after the begin of the current, V; `peaks` holds the drop of each
-/// period. The first period stands for 10 ms: any output, fast or slow, reaches the mean of this period after some 10
-/// ms. The mean of the last two periods stands for 200 ms.
-fn drift_v(peaks: &[f64]) -> Option<f64> {
-    let (first, last) = (peaks.first()?, peaks.last_chunk::<LATE>()?);
-    Some(last.iter().sum::<f64>() / LATE as f64 - first)
 }
 
 /// Concludes the loop.
@@ -274,7 +302,7 @@ pub fn conclude(
     }
     let budget = |value_v: f64| accuracy::line_drop(plan, ac, &on, value_v);
     let offset = accuracy::line_offset(ac, &on);
-    let offset_mv = on.offset_v * 1e3;
+    let offset_mv = on.offset_v.0 * 1e3;
     use Parameter as P;
     use Unit::{Millivolt, Percent, Volt};
     state.found([
@@ -289,7 +317,7 @@ pub fn conclude(
         ),
         (
             P::HalfWave,
-            on.unequal * 100.0,
+            on.unequal.0 * 100.0,
             Percent,
             accuracy::unequal(ac, &on),
         ),

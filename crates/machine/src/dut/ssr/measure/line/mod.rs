@@ -9,6 +9,7 @@ pub mod leakage;
 pub mod looped;
 pub mod references;
 pub mod stage;
+pub mod staircase;
 pub mod train;
 
 use super::board::{Position, RELAY};

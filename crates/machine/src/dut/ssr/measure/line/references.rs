@@ -14,16 +14,15 @@ use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LINE_OHM, Scales};
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, DigitalOut, Points};
 use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
-use crate::dut::ssr::references::References;
+use crate::dut::ssr::references::{Doubt, References};
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::split::Admittance;
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
-use std::sync::Arc;
 use units::{RigTime, Span};
 
 /// Resistance of the reference resistor, ohm.
-const REFERENCE_OHM: f64 = 1000.0;
+pub const REFERENCE_OHM: f64 = 1000.0;
 /// Largest deviation of a gain or ratio from 1 that counts as an error of a channel; beyond it something is broken.
 const NEAR: f64 = 0.1;
 
@@ -36,6 +35,7 @@ pub struct Shown {
     gain: f64,
     divided_gain: f64,
     ratio: Admittance,
+    doubt: Doubt,
 }
 
 impl Reference {
@@ -159,25 +159,32 @@ fn clamped(
     given: &Given,
 ) -> Result<bool, NotDelivered> {
     let all: [_; 3] = given.waveforms()?;
-    let mean = |waveform: &Arc<Waveform>| {
-        let channel = Channel::of(waveform, 1.0, 0.0).filter(|it| !it.is_empty())?;
-        let sum: f64 = (0..channel.len()).map(|it| channel.at(it)).sum();
-        Some(sum / channel.len() as f64)
-    };
-    let means: Option<Vec<f64>> = all.iter().map(mean).collect();
-    let Some(&[divided_v, clamped_v, shunt_v]) = means.as_deref() else {
+    let means: Option<Vec<(f64, f64)>> = all.iter().map(|it| mean(it)).collect();
+    let Some(&[(divided_v, _), (clamped_v, zero_u_v), (shunt_v, shunt_u_v)]) = means.as_deref()
+    else {
         return Err(NotDelivered(Device::Digitizer));
     };
     let (level_v, shown) = (ac.reference_v(), &mut state.shown);
     if reference == Reference::Zero {
         (shown.zero_v, shown.shunt_zero_v) = (clamped_v, shunt_v);
         shown.divided_zero_v = divided_v;
+        (shown.doubt.zero_v, shown.doubt.shunt_zero_v) = (zero_u_v, shunt_u_v);
         return Ok(clamped_v.abs() < NEAR * level_v);
     }
     shown.gain = (clamped_v - shown.zero_v) / level_v;
     shown.divided_gain = (divided_v - shown.divided_zero_v) * DIVIDER / level_v;
     let is_near = |gain: f64| (gain - 1.0).abs() < NEAR;
     Ok(is_near(shown.gain) && is_near(shown.divided_gain))
+}
+
+/// Returns the mean of a record, V, and its standard uncertainty.
+fn mean(waveform: &Waveform) -> Option<(f64, f64)> {
+    let channel = Channel::of(waveform, 1.0, 0.0).filter(|it| !it.is_empty())?;
+    let count = channel.len() as f64;
+    let all = (0..channel.len()).map(|it| channel.at(it));
+    let mean = all.clone().sum::<f64>() / count;
+    let squares: f64 = all.map(|it| (it - mean).powi(2)).sum();
+    Some((mean, squares.sqrt() / count))
 }
 
 fn line(
@@ -212,6 +219,7 @@ fn line(
             susceptance: 0.0,
         };
         state.shown.ratio = leak.admittance.over(siemens);
+        state.shown.doubt.ratio = leak.noise_a / (ac.mains_v * leak.admittance.size());
         return Ok((state.shown.ratio.size() - 1.0).abs() < NEAR);
     }
     let Shown {
@@ -220,6 +228,7 @@ fn line(
         gain,
         divided_gain,
         ratio,
+        doubt,
         ..
     } = state.shown;
     // The capacitance of the fixture lay beside the reference of the ratio, too.
@@ -236,6 +245,10 @@ fn line(
         divided_gain,
         ratio,
         stray,
+        doubt: Doubt {
+            stray_a: leak.noise_a,
+            ..doubt
+        },
         at: now,
     });
     Ok(stray.size() * ac.mains_v < ac.blocked_a)

@@ -2,7 +2,6 @@
 
 use super::super::stage::{Label, Stage};
 use crate::dut::ssr::parameter::Parameter;
-use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::search::Direction;
 
 /// Control voltage of a conformity test, relative to the limit.
@@ -51,6 +50,9 @@ pub enum AcStage {
     Threshold(Direction),
     /// Train of pulses that meet the mains at several phases.
     Train,
+    /// The record of the train once more, with the load current, after the first look has not found a whole answer to
+    /// each pulse.
+    TrainLine,
     /// The AC source goes to the voltage of the loop.
     LoopReady,
     /// Drop at the rated current.
@@ -61,7 +63,7 @@ pub enum AcStage {
 
 impl AcStage {
     /// Every stage.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Reference(Reference::Zero),
         Self::Reference(Reference::Gain),
         Self::Reference(Reference::Ratio),
@@ -78,10 +80,19 @@ impl AcStage {
         Self::Threshold(Direction::Rising),
         Self::Threshold(Direction::Falling),
         Self::Train,
+        Self::TrainLine,
         Self::LoopReady,
         Self::Loop,
         Self::LeakageHot,
     ];
+
+    /// Returns the stage whose record this stage reads; of every other stage, itself.
+    pub const fn recorded_by(self) -> Self {
+        match self {
+            Self::TrainLine => Self::Train,
+            other => other,
+        }
+    }
 
     /// Returns the label, which names the stage in views and gives the key of its time.
     pub const fn label(self) -> Label {
@@ -91,7 +102,7 @@ impl AcStage {
             Self::Blocks(_) => Label::Blocks,
             Self::Conducts(_) => Label::Conducts,
             Self::Threshold(_) => Label::Threshold,
-            Self::Train => Label::Timing,
+            Self::Train | Self::TrainLine => Label::Timing,
             Self::LoopReady | Self::Loop => Label::OnState,
             Self::LeakageHot => Label::LeakageHot,
         }
@@ -105,7 +116,7 @@ impl AcStage {
         };
         match self {
             Self::Leakage => &[LeakageCold, LeakageResistive, LeakageCapacitive],
-            Self::Train => &[TurnOnTime, TurnOffTime, ZeroCross, Retrigger],
+            Self::Train | Self::TrainLine => &[TurnOnTime, TurnOffTime, ZeroCross, Retrigger],
             Self::Loop => &[Drop, DropRms, DcOffset, Distortion, HalfWave, Drift],
             Self::LeakageHot => &[LeakageHot],
             Self::Reference(_)
@@ -119,11 +130,11 @@ impl AcStage {
 
 /// Returns the stages of a good part, after the checks of every part. The loop comes after the train, because its
 /// current heats the part; the second leakage comes after the loop.
-pub fn order(plan: &Plan, is_referenced: bool) -> Vec<Stage> {
+pub fn order(is_referenced: bool, is_searched: bool) -> Vec<Stage> {
     let references = Reference::ALL.map(AcStage::Reference).into_iter();
     let references = references.filter(|_| !is_referenced);
     let searches = [Direction::Rising, Direction::Falling].map(AcStage::Threshold);
-    let searches = searches.into_iter().filter(|_| plan.searches);
+    let searches = searches.into_iter().filter(|_| is_searched);
     let first = [
         AcStage::Leakage,
         AcStage::Blocks(Shift::Within),

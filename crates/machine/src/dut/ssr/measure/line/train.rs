@@ -3,19 +3,23 @@
 
 use super::super::board::{Position, RELAY};
 use super::super::given::{Given, NotDelivered};
+use super::super::stage::Stage;
 use super::super::state::{Next, Pulses, State};
+use super::stage::AcStage;
 use super::{STORED, close, conclude_ready, leave, loop_level};
+use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
-use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER};
+use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM};
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
-use crate::dut::ssr::points::Points;
-use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL};
+use crate::dut::ssr::points::{Device, Points};
+use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::references::References;
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::mains::Mains;
 use crate::dut::ssr::wave::pulses::{Answer, Output, Pulse};
+use crate::dut::ssr::wave::turn::run_from;
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
 use units::{Span, Unit};
@@ -29,6 +33,12 @@ const NEAR_US: f64 = 400.0;
 /// Share of the clamp voltage up to which the clamped channel follows the signal, so that it can be compared with the
 /// divided one.
 const FOLLOWED: f64 = 0.85;
+/// Time without voltage that no zero of a live line explains, as a share of half a period.
+const SILENT: f64 = 0.25;
+/// Time in which the line must reach either polarity, in half periods: one, and what it takes to pass [`LOW`] twice.
+const ONE_SIGN: f64 = 1.4;
+/// Voltage of the line, as a share of its peak, that a live line exceeds except around its zeros.
+const LOW: f64 = 0.1;
 
 /// Returns the acts of the train. The test reads the record after the contactor of the line has opened, while the
 /// source goes to the voltage of the loop.
@@ -54,6 +64,12 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
     acts
 }
 
+/// Returns the acts that read the record of the train once more, with the load current.
+pub fn line_acts(ac: &AcPlan, points: &Points) -> Vec<Act> {
+    let channels = [DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL];
+    vec![Act::Query(points.record(&ac.train(), &channels))]
+}
+
 /// Mains and answers of the output, read from the record of a train.
 pub struct Walk {
     /// The mains, fitted while the output blocks.
@@ -62,6 +78,8 @@ pub struct Walk {
     pub answers: Vec<Answer>,
     /// Interval between two samples, s.
     pub step_s: f64,
+    /// True when the output shows neither mains nor drop for longer than any zero lasts.
+    pub is_silent: bool,
 }
 
 /// Reads the record of a train; `None` when the channels do not fit each other, or the output never blocks.
@@ -104,7 +122,34 @@ pub fn walk(
         mains,
         answers: answers.collect(),
         step_s,
+        is_silent: output.is_silent(SILENT * ac.half_s()),
     })
+}
+
+impl Walk {
+    /// Returns true when each pulse turns the output on and its end turns it off, with voltage before and behind.
+    fn is_whole(&self) -> bool {
+        let answers = |it: &Answer| it.on.is_some() && it.off_s.is_some();
+        !self.is_silent && self.answers.iter().all(answers)
+    }
+}
+
+/// Returns true when the line has its voltage in the whole record: the voltage of the output and that of the load together
+/// are low at zeros alone, and change their sign. A dead line leaves a constant voltage at the capacitance of the output.
+/// `None` when the channels do not fit each other.
+fn lives(ac: &AcPlan, [divided, shunt]: [&Waveform; 2]) -> Option<bool> {
+    let output = Channel::of(divided, DIVIDER, 0.0)?;
+    let load = Channel::of(shunt, LINE_OHM / LINE_SHUNT_OHM, 0.0)?;
+    let least_v = LOW * ac.peak_v();
+    let line_v = |it: usize| output.at(it) + load.at(it);
+    let lasts = |is_so: &dyn Fn(usize) -> bool, halves: f64| {
+        let count = (halves * ac.half_s() / output.step_s).ceil() as usize;
+        run_from(is_so, (0, output.len()), count).is_some()
+    };
+    let is_dead = lasts(&|it| line_v(it).abs() < least_v, SILENT)
+        || lasts(&|it| line_v(it) < least_v, ONE_SIGN)
+        || lasts(&|it| line_v(it) > -least_v, ONE_SIGN);
+    output.is_beside(&load).then_some(!is_dead)
 }
 
 /// Returns the offset of the clamped channel against the divided one, V, from the samples that both follow.
@@ -126,15 +171,42 @@ pub fn conclude(
 ) -> Result<Next, NotDelivered> {
     conclude_ready(state, ac, given);
     let [divided, clamped] = given.waveforms()?;
-    let Some(walk) = walk(ac, state.references, [&divided, &clamped]) else {
+    let walk = walk(ac, state.references, [&divided, &clamped]);
+    if !walk.as_ref().is_some_and(Walk::is_whole) {
+        return Ok(Next::Insert(Stage::Ac(AcStage::TrainLine)));
+    }
+    judge(state, plan, ac, walk);
+    Ok(Next::Planned)
+}
+
+/// Concludes the train after a second look at its record: the output answers wrongly or conducts well, or the line has
+/// died.
+pub fn conclude_line(
+    state: &mut State,
+    plan: &Plan,
+    ac: &AcPlan,
+    given: &Given,
+) -> Result<Next, Reason> {
+    let [divided, clamped, shunt] = given.waveforms()?;
+    if !lives(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))? {
+        return Err(Finding::LineDead.into());
+    }
+    let walk = walk(ac, state.references, [&divided, &clamped]);
+    judge(state, plan, ac, walk);
+    Ok(Next::Planned)
+}
+
+/// Finds times and voltages, or why there are none.
+fn judge(state: &mut State, plan: &Plan, ac: &AcPlan, walk: Option<Walk>) {
+    let Some(walk) = walk else {
         state.record.stop(Finding::PulseNotRecorded);
-        return Ok(Next::Planned);
+        return;
     };
     if walk.answers.iter().any(|it| it.on.is_none()) {
         if plan.bounds(Parameter::TurnOnTime) {
             state.record.stop(Finding::TurnsOnTooLate);
         }
-        return Ok(Next::Planned);
+        return;
     }
     on_found(state, plan, ac, &walk);
     if walk.answers.iter().all(|it| it.off_s.is_some()) {
@@ -142,7 +214,6 @@ pub fn conclude(
     } else if plan.bounds(Parameter::TurnOffTime) {
         state.record.stop(Finding::TurnsOffTooLate);
     }
-    Ok(Next::Planned)
 }
 
 /// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value of all pulses: the mean of
@@ -182,13 +253,13 @@ fn on_found(state: &mut State, plan: &Plan, ac: &AcPlan, walk: &Walk) {
         let budget = accuracy::turn_on_voltage(ac, is_referenced, step_v, (value, count));
         state.found([(Parameter::ZeroCross, value, Unit::Volt, budget)]);
     }
-    let again = walk
-        .answers
-        .iter()
-        .flat_map(|it| it.again_v.iter().copied());
+    // Later half cycles of a pulse are nearly a whole number of samples apart, and err alike: they count as one.
+    let again = |it: &Answer| {
+        let sum: f64 = it.again_v.iter().sum();
+        (!it.again_v.is_empty()).then(|| sum / it.again_v.len() as f64)
+    };
+    let again = walk.answers.iter().filter_map(again);
     if let Some((value, count)) = around_greatest(again, step_v) {
-        // Later half cycles of a pulse are nearly a whole number of samples apart, and err alike.
-        let count = (count / 2).max(1);
         let budget = accuracy::turn_on_voltage(ac, is_referenced, step_v, (value, count));
         state.found([(Parameter::Retrigger, value, Unit::Volt, budget)]);
     }

@@ -38,6 +38,8 @@ pub struct Part {
     pub broken: Vec<DigitalOut>,
     /// Number of the record on the line, from 0, from which on the line is dead.
     pub dead_from: usize,
+    /// Time into that record at which the line dies, s; below 0 before it.
+    pub dies_s: f64,
     pub failing: Option<(Device, &'static str)>,
     /// Ratio of the voltage that the source has to the one asked of it.
     pub source: f64,
@@ -70,6 +72,7 @@ pub fn good() -> Part {
         stuck: Vec::new(),
         broken: Vec::new(),
         dead_from: usize::MAX,
+        dies_s: f64::NEG_INFINITY,
         failing: None,
         source: 1.0,
         hz: 49.98,

@@ -2,6 +2,7 @@
 
 use super::LineBench;
 use crate::dut::ssr::points::DigitalOut;
+use std::cmp::Ordering;
 use std::f64::consts::{SQRT_2, TAU};
 
 /// State of the output while a record is simulated.
@@ -15,11 +16,13 @@ struct Flow {
 }
 
 impl LineBench {
+    fn control_v(&self, at_s: f64) -> f64 {
+        let before = self.control.iter().rev().find(|it| it.0 <= at_s);
+        before.map_or(0.0, |it| it.1)
+    }
+
     fn is_lit(&self, at_s: f64, was: bool) -> bool {
-        let level = |at_s: f64| {
-            let before = self.control.iter().rev().find(|it| it.0 <= at_s);
-            before.map_or(0.0, |it| it.1)
-        };
+        let level = |at_s: f64| self.control_v(at_s);
         let least_v = if was {
             self.part.turn_off_v
         } else {
@@ -30,12 +33,17 @@ impl LineBench {
     }
 
     fn source_v(&self, at_s: f64) -> f64 {
-        if self.is_dead {
+        if at_s >= self.dead_s {
             return 0.0;
         }
         let omega = TAU * self.part.hz;
         let shape = (omega * at_s).sin() + 0.02 * (3.0 * omega * at_s + 0.4).sin();
         SQRT_2 * self.level_v * shape
+    }
+
+    /// Returns the rise of the source voltage, V/s.
+    fn slope(&self, at_s: f64) -> f64 {
+        (self.source_v(at_s + 5e-7) - self.source_v(at_s - 5e-7)) * 1e6
     }
 
     /// Advances the output to an instant.
@@ -71,7 +79,7 @@ impl LineBench {
                 (flow.polarity, flow.has_fired) = (sign, true);
             }
         }
-        let slope = (self.source_v(at_s) - self.source_v(at_s - 1e-6)) * 1e6;
+        let slope = self.slope(at_s);
         if flow.polarity != 0.0 {
             flow.current_a = (source_v - drop_v * flow.polarity) / (ohm + part.ohm);
             flow.volts = drop_v * flow.polarity + part.ohm * flow.current_a;
@@ -84,17 +92,21 @@ impl LineBench {
 
     pub fn renders(&mut self) {
         let is_line = self.is_on(DigitalOut::LineContactor);
-        self.is_dead = is_line && self.line_records >= self.part.dead_from;
-        self.line_records += usize::from(is_line);
         let (record_s, points, _) = self.record;
         let (begins_s, step_s) = (self.begins_s.unwrap(), record_s / points);
+        self.dead_s = match self.line_records.cmp(&self.part.dead_from) {
+            Ordering::Equal if is_line => begins_s + self.part.dies_s,
+            Ordering::Greater if is_line => f64::NEG_INFINITY,
+            Ordering::Less | Ordering::Equal | Ordering::Greater => f64::INFINITY,
+        };
+        self.line_records += usize::from(is_line);
         let reference = (
             self.is_on(DigitalOut::Reference0),
             self.is_on(DigitalOut::Reference1),
         );
         let mut flow = Flow::default();
         let lead = 4000_i64;
-        self.memory = vec![Vec::new(); 3];
+        self.memory = vec![Vec::new(); 4];
         let step = 2e-6_f64.min(step_s);
         let many = (step_s / step).round().max(1.0) as usize;
         for index in -lead..(points as i64) * many as i64 {
@@ -104,9 +116,9 @@ impl LineBench {
                 continue;
             }
             let source_v = self.source_v(at_s);
-            let slope = (self.source_v(at_s) - self.source_v(at_s - 1e-6)) * 1e6;
+            let slope = self.slope(at_s);
             let (volts, current_a) = match reference {
-                (true, true) => (source_v * 1000.0 / 3300.0, source_v / 3300.0),
+                (true, true) => (source_v * 1000.0 / 3300.0, self.referred(source_v, slope)),
                 (true, false) if self.is_on(DigitalOut::SmuToOutput) => (self.smu_v, 0.0),
                 (true, false) => (source_v, self.part.stray_f * slope),
                 (false, true) => (0.0, 0.0),
@@ -126,6 +138,7 @@ impl LineBench {
                 (false, false) => current_a,
             };
             let values = [
+                1.015 * self.control_v(at_s) + 0.04,
                 volts / 100.0 * self.part.gains[0],
                 volts.clamp(-10.0, 10.0) * self.part.gains[1] + self.part.zero_v,
                 late_a * shunt * self.part.gains[2],
@@ -140,17 +153,22 @@ impl LineBench {
         self.has_stuck |= self.part.sticks && flow.has_fired;
     }
 
+    /// Returns the current of the reference resistor and of the stray capacitance beside it.
+    fn referred(&self, source_v: f64, slope: f64) -> f64 {
+        (source_v + 1000.0 * self.part.stray_f * slope) / 3300.0
+    }
+
     /// Returns the current of a blocked output, or of the reference, as the delayed channel shows it.
     fn delayed(&self, at_s: f64) -> f64 {
         let at_s = at_s - self.part.delay_of_shunt_s;
         let source_v = self.source_v(at_s);
-        let slope = (self.source_v(at_s) - self.source_v(at_s - 1e-6)) * 1e6;
+        let slope = self.slope(at_s);
         let reference = (
             self.is_on(DigitalOut::Reference0),
             self.is_on(DigitalOut::Reference1),
         );
         match reference {
-            (true, true) => source_v / 3300.0,
+            (true, true) => self.referred(source_v, slope),
             (true, false) => self.part.stray_f * slope,
             (false, _) => {
                 self.part.leak_s * source_v + (self.part.leak_f + self.part.stray_f) * slope
