@@ -178,3 +178,33 @@ fn a_silent_module_with_an_interlock_input_is_named() {
         );
     }
 }
+
+#[test]
+fn ramps_find_the_thresholds_within_their_uncertainty() {
+    let workshop = Workshop::new("ssr-ramp");
+    workshop.change(
+        "config/rigs/ssr/recipes/ssr-dc-60v-3a.toml",
+        "method = \"bisect\"",
+        "method = \"ramp\"  ",
+    );
+    let said = workshop.run(&format!(
+        "{RUN} --lot R --count 40 --seed 5 --truth t.jsonl"
+    ));
+    let rows = objects(&said.with_status(0).stdout);
+    let truth = objects(&workshop.read("t.jsonl"));
+    let parts = rows.iter().filter(|it| it["type"] == "part");
+    let (mut found, mut beyond) = (0, 0);
+    for (part, truth) in parts
+        .zip(&truth)
+        .filter(|(_, truth)| truth["defect"].is_null())
+    {
+        assert_eq!(part["verdict"], "pass", "{part}");
+        for key in ["v_on_v", "v_off_v"] {
+            let of = |it: &Value| it[key].as_f64().unwrap_or_else(|| panic!("{key}: {it}"));
+            let error = (of(&part["values"]) - of(truth)).abs();
+            found += 1;
+            beyond += usize::from(error > of(&part["uncertainty"]));
+        }
+    }
+    assert!(found >= 60 && beyond * 10 <= found, "{beyond} of {found}");
+}

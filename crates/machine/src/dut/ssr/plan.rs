@@ -78,8 +78,10 @@ pub struct Plan {
     pub control_v: f64,
     /// Voltage at the reversed input, V, above 0.
     pub reverse_v: f64,
-    /// True when a search follows the conformity test.
+    /// True when a search or a ramp follows the conformity test.
     pub searches: bool,
+    /// True for ramps in place of a search.
+    pub ramps: bool,
     /// Width of the interval at which a search ends, V.
     pub resolution_v: f64,
     /// Longest time constant of the output, s.
@@ -220,7 +222,8 @@ impl Plan {
         Ok(Self {
             control_v: part.control_v,
             reverse_v: test.reverse_v,
-            searches: test.method == Method::Bisect,
+            searches: test.method != Method::Conformity,
+            ramps: test.method == Method::Ramp,
             resolution_v: test.resolution_mv / 1e3,
             time_constant_s,
             turn_on_v: high(Parameter::TurnOnVoltage),

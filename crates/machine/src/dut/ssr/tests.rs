@@ -126,6 +126,28 @@ fn limits_that_conformity_cannot_decide_are_refused() {
 }
 
 #[test]
+fn a_ramp_needs_a_step_at_its_begin() {
+    let cases = [
+        (
+            "v_off_v = { low = 1.0 }",
+            "v_off_v = { low = 0.2 }",
+            "limits.v_off_v.low",
+        ),
+        (
+            "v_on_v = { high = 3.5 }",
+            "v_on_v = { high = 4.6 }",
+            "limits.v_on_v.high",
+        ),
+    ];
+    let ramp = ("method = \"bisect\"", "method = \"ramp\"");
+    assert_eq!(faults(&[ramp], NO_CHANGE, same), [""; 0]);
+    for (from, to, key) in cases {
+        let found = faults(&[ramp, (from, to)], NO_CHANGE, same);
+        assert!(found.len() == 1 && found[0].contains(key), "{found:?}");
+    }
+}
+
+#[test]
 fn made_up_parts_lie_inside_every_limit() {
     let recipe = recipe(&[]);
     let made_up = recipe.device.made_up(&recipe.limits);

@@ -137,6 +137,7 @@ function showPart(part) {
     return row(nameOf(it.parameter), String(it.attempt), value, uncertainty,
       unitOf(it.parameter), limitText(it), verdictCell(it.verdict));
   }));
+  showCurves(part);
   showTestBars(part);
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
     row(nameOf(it.parameter), wordOr("line-" + sample.line, sample.line), wordOr("module-" + sample.module, sample.module), sample.channel,

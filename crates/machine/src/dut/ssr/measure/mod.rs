@@ -19,6 +19,7 @@ mod given;
 mod input;
 mod leakage;
 pub(super) mod line;
+pub(super) mod ramp;
 mod resistance;
 mod stage;
 mod state;
@@ -114,7 +115,7 @@ impl Test {
         record.spent.add(self.runner.spent());
         record.took(self.stage.key(), now.since(self.began));
         let seen = std::mem::take(&mut self.runner.readings.trace);
-        record.trace.append(seen);
+        record.trace.append(seen.of_stage(self.stage.name()));
         self.began = now;
     }
 

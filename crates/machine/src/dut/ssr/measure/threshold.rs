@@ -1,4 +1,4 @@
-//! Turn-on and turn-off voltage by a search. The output switches with hysteresis, so each step begins from 0 V, or
+//! Turn-on and turn-off voltage by a search, or by a [`ramp`]. The output switches with hysteresis, so each step begins from 0 V, or
 //! from the nominal voltage for the turn-off.
 
 use super::conformity::{is_off, is_on};
@@ -6,6 +6,7 @@ use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
 use super::line::conforms::{self, Conducting};
 use super::line::stage::AcStage;
+use super::ramp;
 use super::stage::Stage;
 use super::state::{Next, State};
 use crate::dut::Reason;
@@ -24,6 +25,9 @@ const MOST_STEPS: u32 = 20;
 
 /// Returns the acts of one step; none when no interval is proven to hold the threshold.
 pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Points) -> Vec<Act> {
+    if plan.ramps {
+        return ramp::acts(state, direction, plan, points);
+    }
     let Some(search) = state.search.or_else(|| interval(state, direction, plan)) else {
         return Vec::new();
     };
@@ -103,7 +107,7 @@ pub fn conclude_line(
 
 /// Returns the interval that holds the threshold: the output is proven to block at its lower end and to conduct at its
 /// upper end.
-fn interval(state: &State, direction: Direction, plan: &Plan) -> Option<Search> {
+pub(super) fn interval(state: &State, direction: Direction, plan: &Plan) -> Option<Search> {
     let obeys = |of| state.proof(of).unwrap_or(Judgement::Pass) == Judgement::Pass;
     if !obeys(Parameter::TurnOnVoltage) || !obeys(Parameter::TurnOffVoltage) {
         return None;
@@ -127,6 +131,9 @@ pub fn conclude(
     plan: &Plan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
+    if plan.ramps {
+        return ramp::conclude(state, direction, plan, given);
+    }
     let Some(search) = state.search else {
         return Ok(Next::Planned);
     };

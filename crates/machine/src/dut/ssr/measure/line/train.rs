@@ -8,10 +8,11 @@ use super::{STORED, close, conclude_ready, leave, loop_level};
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
 use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER};
+use crate::dut::ssr::marks;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::Points;
-use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL};
+use crate::dut::ssr::program::{CONTROL_CHANNEL, DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::references::References;
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::mains::Mains;
@@ -24,6 +25,14 @@ use units::{Span, Unit};
 /// with random turn-on counts: nearer to zero the load current is too small to latch.
 const LATCHES: f64 = 0.3;
 
+/// Channels of the record that the test reads. The source takes longer to go to the voltage of the loop than the
+/// digitizer to deliver them.
+const CHANNELS: [f64; 4] = [
+    CONTROL_CHANNEL,
+    DIVIDED_CHANNEL,
+    OUTPUT_CHANNEL,
+    SHUNT_CHANNEL,
+];
 /// Time from a zero of the mains within which the voltage shows the time of a turn-on, microseconds.
 const NEAR_US: f64 = 400.0;
 /// Share of the clamp voltage up to which the clamped channel follows the signal, so that it can be compared with the
@@ -47,7 +56,7 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
         Act::Wait(Span::seconds(scales.record_s) + STORED),
     ]);
     acts.extend(leave(state, points));
-    let mut queries = points.record(&scales, &[DIVIDED_CHANNEL, OUTPUT_CHANNEL]);
+    let mut queries = points.record(&scales, &CHANNELS);
     queries.extend(state.end_pulses(points));
     queries.extend(loop_level(state, ac, points));
     acts.push(Act::Query(queries));
@@ -125,11 +134,12 @@ pub fn conclude(
     given: &Given,
 ) -> Result<Next, NotDelivered> {
     conclude_ready(state, ac, given);
-    let [divided, clamped] = given.waveforms()?;
+    let [_control, divided, clamped, _shunt] = given.waveforms()?;
     let Some(walk) = walk(ac, state.references, [&divided, &clamped]) else {
         state.record.stop(Finding::PulseNotRecorded);
         return Ok(Next::Planned);
     };
+    mark(state, &walk);
     if walk.answers.iter().any(|it| it.on.is_none()) {
         if plan.bounds(Parameter::TurnOnTime) {
             state.record.stop(Finding::TurnsOnTooLate);
@@ -143,6 +153,19 @@ pub fn conclude(
         state.record.stop(Finding::TurnsOffTooLate);
     }
     Ok(Next::Planned)
+}
+
+/// Marks the zeros of the mains from which times count, and the instants at which the output switches.
+fn mark(state: &mut State, walk: &Walk) {
+    let trace = &mut state.record.trace;
+    for it in &walk.answers {
+        trace.mark(marks::ZERO, it.zero_s);
+        it.on.iter().for_each(|on| trace.mark(marks::ON, on.at_s));
+        trace.mark(marks::ZERO, it.off_zero_s);
+        it.off_s
+            .iter()
+            .for_each(|off_s| trace.mark(marks::OFF, *off_s));
+    }
 }
 
 /// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value of all pulses: the mean of
