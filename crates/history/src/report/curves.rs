@@ -11,6 +11,8 @@ use texts::Lang;
 
 /// Size of the drawing of one signal, px.
 const PANEL: [f64; 2] = [720.0, 100.0];
+/// Up to as many samples of a signal have a dot each: the line between them is no reading.
+const DOTTED: usize = 60;
 /// Marks with their colours.
 const MARKS: [(&str, &str); 3] = [
     ("next_zero", QUIET),
@@ -104,7 +106,8 @@ fn figure(language: Lang, curves: &[Curve], record: &Record<'_>) -> Markup {
         .iter()
         .filter(is_signal)
         .map(|it| (it, record.samples(it)));
-    let mut signals: Vec<_> = signals.filter(|(_, samples)| samples.len() > 1).collect();
+    let has_line = |it: &Vec<(f64, Option<f64>)>| it.iter().filter(|it| it.1.is_some()).count() > 1;
+    let mut signals: Vec<_> = signals.filter(|(_, samples)| has_line(samples)).collect();
     signals.sort_by_key(|(curve, _)| {
         let mut first = FIRST.iter();
         first
@@ -180,6 +183,12 @@ fn panel(
     }
     let points = samples.iter().copied();
     plot.path(points, LINE);
+    for (at, value) in samples.iter().filter(|_| samples.len() <= DOTTED) {
+        if let Some(value) = value {
+            let place = [plot.at_x(*at), plot.at_y(*value)];
+            plot.svg.circle(place, 2.2, &format!("fill=\"{LINE}\""));
+        }
+    }
     let step = round_step((x[1] - x[0]) / 8.0).unwrap_or(1.0);
     let ticks = (x[0] / step).ceil() as i64..=(x[1] / step).floor() as i64;
     for tick in ticks.filter(|_| is_last) {

@@ -2,6 +2,8 @@
 
 // Size of a panel, pixels.
 const PANEL = {wide: 1000, high: 110};
+// Up to as many samples of a signal have a dot each: the line between them is no reading.
+const DOTTED = 60;
 const MARKS = ["next_zero", "switch_on", "switch_off"];
 // Signals that come first, from top to bottom.
 const FIRST = ["control_voltage", "load_voltage", "load_current", "output_voltage"];
@@ -37,7 +39,7 @@ function showCurves(part) {
 function recordFigure(curves, {stage, from, to, zero}) {
   const inside = (curve) => pointsOf(curve).filter(([at]) => from <= at && at <= to);
   const signals = curves.filter((it) => it.unit && !it.signal.startsWith("record.")).sort((a, b) => placeOf(a) - placeOf(b))
-    .map((it) => [it, inside(it)]).filter(([, points]) => points.length > 1);
+    .map((it) => [it, inside(it)]).filter(([, points]) => points.filter(([, value]) => value !== null).length > 1);
   if (signals.length === 0) return null;
   const marks = MARKS.map((name) => [name, named(curves, "mark." + name).flatMap(inside).map(([at]) => (at - zero) / 1000)]).filter(([, times]) => times.length);
   const figure = make("figure");
@@ -58,12 +60,13 @@ const stepped = (value, step) => value.toFixed(Math.max(0, -Math.floor(Math.log1
 
 function panel(name, across, points, marks) {
   const values = points.map(([, value]) => value).filter(Number.isFinite), low = Math.min(...values), room = .08 * (Math.max(...values) - low) || .5;
-  const {svg, x, path, line} = plot(name, [PANEL.wide, PANEL.high], across, {from: low - room, to: Math.max(...values) + room, text: stepped});
+  const {svg, x, y, path, line} = plot(name, [PANEL.wide, PANEL.high], across, {from: low - room, to: Math.max(...values) + room, text: stepped});
   for (const [kind, times] of marks) {
     const title = drawn("title", {});
     title.textContent = word("mark-" + kind) + colon() + times.map((it) => it.toFixed(3) + " ms").join(comma());
     path(times.map((it) => "M" + x(it).toFixed(1) + " " + PLOT.above + "V" + (PANEL.high - PLOT.below)).join(""), "mark " + kind).append(title);
   }
   line(points, "curve");
+  if (points.length <= DOTTED) path(points.filter(([, value]) => value !== null).map(([at, value]) => "M" + x(at).toFixed(1) + " " + y(value).toFixed(1) + "h.1").join(""), "dots");
   return svg;
 }
