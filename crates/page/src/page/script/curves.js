@@ -4,7 +4,8 @@
 const PANEL = {wide: 1000, high: 110};
 // Up to as many samples of a signal have a dot each: the line between them is no reading.
 const DOTTED = 60;
-const MARKS = ["next_zero", "switch_on", "switch_off"];
+// Marks in the order of drawing: the dots of a zero stay visible over an instant at that zero.
+const MARKS = ["switch_on", "switch_off", "next_zero"];
 // Signals that come first, from top to bottom.
 const FIRST = ["control_voltage", "load_voltage", "load_current", "output_voltage"];
 
