@@ -57,7 +57,10 @@ const LINES: [(&str, &[(&str, &str)], &str); 3] = [
         &[
             ("mains_v = 230.0", "mains_v = 115.0"),
             ("mains_hz = 50.0", "mains_hz = 60.0"),
-            ("{ low = 1000.0, high = 1900.0 }", "{ low = 600.0, high = 1150.0 }"),
+            (
+                "{ low = 1000.0, high = 1900.0 }",
+                "{ low = 600.0, high = 1150.0 }",
+            ),
         ],
         "",
     ),
@@ -65,9 +68,18 @@ const LINES: [(&str, &[(&str, &str)], &str); 3] = [
         "of 60 Hz, distorted and drifting",
         &[
             ("mains_hz = 50.0", "mains_hz = 60.0"),
-            ("{ low = 1000.0, high = 1900.0 }", "{ low = 1200.0, high = 2280.0 }"),
-            ("i_leak_ua = { high = 2000.0 }", "i_leak_ua = { high = 2400.0 }"),
-            ("i_leak_hot_ua = { high = 2000.0 }", "i_leak_hot_ua = { high = 2400.0 }"),
+            (
+                "{ low = 1000.0, high = 1900.0 }",
+                "{ low = 1200.0, high = 2280.0 }",
+            ),
+            (
+                "i_leak_ua = { high = 2000.0 }",
+                "i_leak_ua = { high = 2400.0 }",
+            ),
+            (
+                "i_leak_hot_ua = { high = 2000.0 }",
+                "i_leak_hot_ua = { high = 2400.0 }",
+            ),
         ],
         BAD_LINE,
     ),
@@ -247,4 +259,34 @@ fn a_silent_module_with_an_interlock_input_is_named() {
             "from {from_s} s: {text}"
         );
     }
+}
+
+#[test]
+fn ramps_find_the_thresholds_within_their_uncertainty() {
+    let workshop = Workshop::new("ssr-ramp");
+    workshop.change(
+        "config/rigs/ssr/recipes/ssr-dc-60v-3a.toml",
+        "method = \"bisect\"",
+        "method = \"ramp\"  ",
+    );
+    let said = workshop.run(&format!(
+        "{RUN} --lot R --count 40 --seed 5 --truth t.jsonl"
+    ));
+    let rows = objects(&said.with_status(0).stdout);
+    let truth = objects(&workshop.read("t.jsonl"));
+    let parts = rows.iter().filter(|it| it["type"] == "part");
+    let (mut found, mut beyond) = (0, 0);
+    for (part, truth) in parts
+        .zip(&truth)
+        .filter(|(_, truth)| truth["defect"].is_null())
+    {
+        assert_eq!(part["verdict"], "pass", "{part}");
+        for key in ["v_on_v", "v_off_v"] {
+            let of = |it: &Value| it[key].as_f64().unwrap_or_else(|| panic!("{key}: {it}"));
+            let error = (of(&part["values"]) - of(truth)).abs();
+            found += 1;
+            beyond += usize::from(error > of(&part["uncertainty"]));
+        }
+    }
+    assert!(found >= 60 && beyond * 10 <= found, "{beyond} of {found}");
 }

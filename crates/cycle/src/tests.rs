@@ -179,6 +179,7 @@ impl Bench {
             instrument: self.instrument(name),
             program,
             arguments: Vec::new(),
+            shows: Vec::new(),
         }
     }
 

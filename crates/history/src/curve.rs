@@ -9,7 +9,8 @@
 //!
 //! A sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), about 4 in a test by the default
 //! recipe. A part takes at most 12 kB, because a test keeps at most
-//! [`MAX_SAMPLES`](machine::instrument::trace::MAX_SAMPLES) samples.
+//! [`MAX_SAMPLES`](machine::instrument::trace::MAX_SAMPLES) samples; with a digitizer, at most 156 kB, because the test
+//! keeps [`MAX_WAVE_SAMPLES`](machine::instrument::trace::MAX_WAVE_SAMPLES) samples of waveforms beside them.
 
 use super::Moment;
 use super::error::{Doing, HistoryError, Result};
@@ -195,7 +196,7 @@ impl Archive {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use machine::instrument::trace::MAX_SAMPLES;
+    use machine::instrument::trace::{MAX_SAMPLES, MAX_WAVE_SAMPLES};
 
     /// Largest number of bytes that a sample takes: a gap below 2^35 us takes 5, a change of less than 2^47 steps 7.
     const WORST: usize = 5 + 7;
@@ -250,6 +251,7 @@ mod tests {
         ]));
         assert!(bytes.len() <= 3 * WORST, "{} bytes", bytes.len());
         const { assert!(MAX_SAMPLES * WORST <= 12_000) };
+        const { assert!((MAX_SAMPLES + MAX_WAVE_SAMPLES) * WORST <= 156_000) };
     }
 
     #[test]

@@ -96,18 +96,8 @@ fn named(mut plot: Plot, air: &BatchAir, unit: &str) -> String {
 
 /// Draws values over time; a missing value breaks the line.
 fn line(plot: &mut Plot, air: &BatchAir, values: &[Option<f64>], colour: &str) {
-    let mut path = String::new();
-    let mut joins = false;
-    for (t_s, value) in air.t_s.iter().zip(values) {
-        if let Some(value) = value {
-            let (x, y) = (plot.at_x(t_s / 60.0), plot.at_y(*value));
-            path.push_str(&format!("{}{x:.1} {y:.1}", if joins { "L" } else { "M" }));
-        }
-        joins = value.is_some();
-    }
-    plot.svg.add(format_args!(
-        "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.2\"/>"
-    ));
+    let minutes = air.t_s.iter().map(|it| it / 60.0);
+    plot.path(minutes.zip(values.iter().copied()), colour);
 }
 
 /// Draws a mark for each time: above the curve of the reference when `side` is −1, below when it is 1.

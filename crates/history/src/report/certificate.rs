@@ -4,7 +4,7 @@ use super::data_matrix::data_matrix;
 use super::lot::{limits, source};
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{doubt_decimals, figure, parameter, short_hash};
-use super::{Paper, batch, words};
+use super::{Paper, batch, curves, words};
 use crate::{Batch, LotSummary, Measurement, Part};
 use maud::{Markup, PreEscaped, html};
 use quality::Limits;
@@ -36,6 +36,7 @@ pub fn certificate(
         (results(language, part))
         p.note { (language.text("paper-uncertainty_note")) }
         @if let Some(it) = tested_in { (batch::of_part(paper, it, part.seq)) }
+        (curves::of_part(paper, part))
         p.remark { (language.text("paper-not_tested")) }
         (sign_off(language))
     };

@@ -20,6 +20,7 @@ pub mod card;
 pub mod certificate;
 mod charts;
 pub mod comparison;
+mod curves;
 mod data_matrix;
 pub mod lot;
 mod page;

@@ -76,6 +76,22 @@ impl Plot {
         self.svg.text([at + 3.0, ABOVE + 9.0], &style, name);
     }
 
+    /// Draws a line through points; a value that is missing parts it.
+    pub fn path(&mut self, points: impl Iterator<Item = (f64, Option<f64>)>, colour: &str) {
+        let mut path = String::new();
+        let mut joins = false;
+        for (x, value) in points {
+            if let Some(value) = value {
+                let (x, y) = (self.at_x(x), self.at_y(value));
+                path.push_str(&format!("{}{x:.1} {y:.1}", if joins { "L" } else { "M" }));
+            }
+            joins = value.is_some();
+        }
+        self.svg.add(format_args!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.2\"/>"
+        ));
+    }
+
     /// Returns the picture as SVG.
     pub fn finish(self) -> String {
         self.svg.inline()

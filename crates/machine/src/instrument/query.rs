@@ -13,6 +13,23 @@ pub struct Query {
     pub program: &'static str,
     /// Arguments by name; the name ends with the unit.
     pub arguments: Vec<(&'static str, f64)>,
+    /// Quantities that the trace makes of the waveform; empty for a program that reads none.
+    pub shows: Vec<Shown>,
+}
+
+/// A quantity that a waveform shows: `offset + factor * volts`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// Name under which the trace keeps it.
+    pub name: &'static str,
+    /// Unit of the quantity.
+    pub unit: &'static str,
+    /// Resolution of stored values, in the unit of the quantity, above 0.
+    pub step: f64,
+    /// Units of the quantity per volt at the digitizer.
+    pub factor: f64,
+    /// Quantity at 0 V.
+    pub offset: f64,
 }
 
 /// Voltages of a digitizer at equal intervals.

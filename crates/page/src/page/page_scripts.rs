@@ -21,7 +21,7 @@ pub(super) const SOURCES: [[&str; 3]; 11] = {
     [
         source!("alarms", "alarms"),
         source!("calibration", "calibration"),
-        source!("history", "history"),
+        source!("history", "curves", "history"),
         source!("lots", "lots"),
         source!("people", "people"),
         source!("quality", "quality"),

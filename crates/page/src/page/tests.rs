@@ -125,6 +125,8 @@ fn every_text_of_the_pages_is_used() {
         "tooling_side",
         "rigs",
         "rigs_remedy",
+        "curve",
+        "mark",
     ];
     for key in table().keys() {
         let family = key.split('-').next().unwrap();

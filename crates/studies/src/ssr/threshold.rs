@@ -11,6 +11,11 @@ const LIMITS_V: (f64, f64) = (1.0, 3.5);
 /// Commands and readings of a step with and without a return to 0 V, s.
 const STEP_S: f64 = 0.018;
 const BRIEF_S: f64 = 0.014;
+/// Commands and transfer of a recorded ramp, s; the shortest time of one of its levels, s; length of the record over that
+/// of the ramp.
+const SWEEP_S: f64 = 0.09;
+const LEVEL_S: f64 = 0.3e-3;
+const RECORD: f64 = 1.5;
 /// Longest time constant that a recipe promises, s.
 const LONGEST_S: f64 = 0.5e-3;
 /// Steps of the model of a ramp, s.
@@ -51,7 +56,8 @@ pub fn methods(parts: u64) -> Vec<Figure> {
     let widths = [5.0, 10.0, 20.0, 40.0, 80.0];
     let plain = widths.map(|mv| bisect(parts, mv, false));
     let expected = widths.map(|mv| bisect(parts, mv, true));
-    let all = ramps.into_iter().chain(plain).chain(expected);
+    let swept = [10.0, 25.0, 50.0].map(|mv| swept(parts, mv));
+    let all = ramps.into_iter().chain(swept).chain(plain).chain(expected);
     all.chain([conformity(parts)]).collect()
 }
 
@@ -72,6 +78,35 @@ fn ramp(parts: u64, rate: f64) -> Figure {
     }
     row(
         format!("ramp, {rate} V/s"),
+        &errors,
+        "mV",
+        seconds / parts as f64,
+    )
+}
+
+/// Returns the error of the controller's ramp at a resolution, mV: four levels within it, and half of the greatest lag
+/// taken from the level at which the output conducts.
+fn swept(parts: u64, width_mv: f64) -> Figure {
+    let mut dice = Dice::new(1);
+    let (mut errors, mut seconds) = (Vec::new(), 0.0);
+    let level_s = (LONGEST_S / 2.0).max(LEVEL_S);
+    let step_v = width_mv / 4e3;
+    let lag_v = step_v / level_s * LONGEST_S;
+    let count = ((LIMITS_V.1 - LIMITS_V.0) / step_v).ceil();
+    for _ in 0..parts {
+        let part = Part::drawn(&mut dice);
+        let (mut level, mut number) = (0.0, 0.0);
+        while level < 1.0 && number < count {
+            let light = part.light(LIMITS_V.0 + step_v * number);
+            level = light + (level - light) * (-level_s / part.tau_s).exp();
+            number += 1.0;
+        }
+        let found_v = LIMITS_V.0 + step_v * (number - 1.0);
+        errors.push(1e3 * (found_v - (step_v + lag_v) / 2.0 - part.on_v));
+        seconds += SWEEP_S + RECORD * count * level_s;
+    }
+    row(
+        format!("recorded ramp, {width_mv} mV"),
         &errors,
         "mV",
         seconds / parts as f64,

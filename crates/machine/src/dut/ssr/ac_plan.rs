@@ -97,6 +97,10 @@ pub struct Scales {
     pub record_s: f64,
     /// Number of samples.
     pub points: f64,
+    /// Load of the circuit, shunt included, ohm.
+    pub load_ohm: f64,
+    /// Shunt of the circuit, ohm.
+    pub shunt_ohm: f64,
 }
 
 impl AcPlan {
@@ -217,6 +221,8 @@ impl AcPlan {
             shunt_v: ROOM * peak_a * LOOP_SHUNT_OHM / HALF_SCREEN,
             record_s: LOOP_S.max(0.2 + 1.1 * self.half_s()) / (1.0 - BEFORE),
             points: 6e3,
+            load_ohm: LOOP_OHM,
+            shunt_ohm: LOOP_SHUNT_OHM,
         }
     }
 
@@ -237,6 +243,8 @@ impl AcPlan {
             shunt_v: ROOM * load_a * LINE_SHUNT_OHM / HALF_SCREEN,
             record_s,
             points,
+            load_ohm: LINE_OHM,
+            shunt_ohm: LINE_SHUNT_OHM,
         }
     }
 }

@@ -74,6 +74,17 @@ pub fn threshold(plan: &Plan, volts: f64, width_v: f64) -> Budget {
         .with_random_bounds("step", width_v / 2.0)
 }
 
+/// Returns the budget of a threshold of the control voltage, V, found by a ramp with levels `step_v` apart. The output is
+/// late by up to `lag_v`, of which the result allows for half.
+pub fn ramp(plan: &Plan, volts: f64, step_v: f64, lag_v: f64) -> Budget {
+    Budget::default()
+        .with_bounds("source gain", plan.input.source.gain(volts))
+        .with_bounds("source offset", plan.input.source.offset)
+        .with_bounds("lag", lag_v / 2.0)
+        // The record may show the level beside the one that switched.
+        .with_random_bounds("step", step_v)
+}
+
 /// Returns the budget of a time, microseconds, between a control edge and a crossing of the output.
 pub fn time(plan: &Plan, step_s: f64, control: &Crossing, output: &Crossing) -> Budget {
     let took_s = output.at_s - control.at_s;

@@ -16,6 +16,8 @@ use crate::instrument::act::Act;
 use crate::rig::fault::Fault;
 use crate::rig::wiring::Wiring;
 
+/// Least step, as a share of the nominal control voltage, on which the digitizer triggers before a ramp.
+const STEP: f64 = 0.1;
 /// Share of the rated voltage up to which the line may go.
 const ROOM_OF_RATING: f64 = 1.0;
 
@@ -38,6 +40,7 @@ pub fn infeasible(ssr: &SsrRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
             .flat_map(|ac| off_line(ssr, ac, &points, &wiring)),
     );
     faults.extend(backwards(&plan));
+    faults.extend(unramped(&plan));
     faults.extend(unserved(&plan, &points, &wiring));
     faults
 }
@@ -134,6 +137,29 @@ fn backwards(plan: &Plan) -> Option<Fault> {
     let least_v = off_v + 4.0 * plan.guard_v;
     let expected = format!("at least {least_v:.3}: limits.v_off_v.low and two guard bands");
     (on_v < least_v).then(|| Fault::new("limits.v_on_v.high", on_v, expected))
+}
+
+/// Refuses a ramp of an AC part, which switches at zeros of the mains alone, and one without a step that starts the record
+/// of the digitizer: from 0 V up to the turn-off limit, and from the nominal voltage down to the turn-on limit.
+fn unramped(plan: &Plan) -> Option<Fault> {
+    if !plan.ramps {
+        return None;
+    }
+    if plan.dc().is_none() {
+        let expected =
+            "\"conformity\" or \"bisect\", because an AC output switches once in a half period";
+        return Some(Fault::new("test.method", "\"ramp\"", expected));
+    }
+    let least_v = STEP * plan.control_v;
+    let off_v = plan.turn_off_v.unwrap_or(0.0);
+    if off_v < least_v {
+        let expected = format!("at least {least_v:.3}, from which a ramp begins");
+        return Some(Fault::new("limits.v_off_v.low", off_v, expected));
+    }
+    let most_v = plan.control_v - least_v;
+    let on_v = plan.turn_on_v.unwrap_or(plan.control_v);
+    let expected = format!("at most {most_v:.3}, from which a ramp begins");
+    (on_v > most_v).then(|| Fault::new("limits.v_on_v.high", on_v, expected))
 }
 
 /// Returns a fault for each instrument whose profile lacks a program of the test, or refuses one of its arguments.

@@ -50,10 +50,10 @@ const LIMITS: &[Key] = table! {
 };
 
 const TEST: &[Key] = table! {
-    key("method", Form::Choice(&["conformity", "bisect"]), "station",
-        "whether a search finds v_on_v and v_off_v after the conformity test, which alone decides");
+    key("method", Form::Choice(&["conformity", "ramp", "bisect"]), "station",
+        "whether a ramp (DC parts) or a search finds v_on_v and v_off_v after the conformity test, which alone decides");
     key("resolution_mv", from_to(1.0, 1000.0, "mV"), "station",
-        "width of the interval at which a search ends; its middle is the result");
+        "width of the interval at which a search ends, whose middle is the result; a ramp changes by as much in two time constants");
     optional("phases", Form::Whole { unit: "", low: 2, high: 24 }, "station",
         "AC parts: pulses of the train, at as many phases of the mains; default 6");
     optional("sampling", Form::Whole { unit: "", low: 1, high: 10_000 }, "station",

@@ -10,7 +10,7 @@
 //! | which levels, scales and times follow for an AC load | [`ac_plan`] |
 //! | how accurate a figure is | [`accuracy`], [`ac_accuracy`] |
 //! | which errors of the digitizer the references of the fixture reveal | [`references`] |
-//! | where the edges of a record are | [`edges`] |
+//! | where the edges of a record are, which instants the curves mark | [`edges`], [`marks`] |
 //! | what a record of line or loop shows | [`wave`] |
 //! | how a search finds a threshold, and where it begins | [`search`], [`learned`] |
 //! | why a part fails or stays unjudged, besides its figures | [`finding`] |
@@ -30,6 +30,7 @@ pub mod finding;
 pub mod keys;
 pub mod learned;
 pub mod made_up;
+mod marks;
 pub mod measure;
 pub mod parameter;
 pub mod plan;

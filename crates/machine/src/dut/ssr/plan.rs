@@ -80,8 +80,10 @@ pub struct Plan {
     pub control_v: f64,
     /// Voltage at the reversed input, V, above 0.
     pub reverse_v: f64,
-    /// Number of parts of a lot, from the first one on, in which a search follows the conformity test.
+    /// Number of parts of a lot, from the first one on, in which a search or a ramp follows the conformity test.
     pub searched: u32,
+    /// True for ramps in place of a search.
+    pub ramps: bool,
     /// Width of the interval at which a search ends, V.
     pub resolution_v: f64,
     /// Longest time constant of the output, s.
@@ -224,8 +226,9 @@ impl Plan {
             reverse_v: test.reverse_v,
             searched: match test.method {
                 Method::Conformity => 0,
-                Method::Bisect => test.searched.unwrap_or(u32::MAX),
+                Method::Bisect | Method::Ramp => test.searched.unwrap_or(u32::MAX),
             },
+            ramps: test.method == Method::Ramp,
             resolution_v: test.resolution_mv / 1e3,
             time_constant_s,
             turn_on_v: high(Parameter::TurnOnVoltage),

@@ -1,10 +1,11 @@
 //! Queries of the test: programs of the profiles with their arguments.
 
 use super::ac_plan::{self, AcPlan, Scales};
-use super::plan::{CurrentRange, DcPlan, LOAD_V, PERIOD_S, PULSE_OHM, Plan};
+use super::measure::ramp::Ramp;
+use super::plan::{CurrentRange, DcPlan, LOAD_OHM, LOAD_V, PERIOD_S, PULSE_OHM, Plan};
 use super::points::{Device, Points};
 use super::wave::staircase::Levels;
-use crate::instrument::query::Query;
+use crate::instrument::query::{Query, Shown};
 
 /// Channel of the digitizer at the control input.
 pub const CONTROL_CHANNEL: f64 = 1.0;
@@ -25,6 +26,8 @@ pub const BEFORE: f64 = 0.1;
 /// Length of the record of an answer over the time within which the output must answer, and its samples.
 pub const ANSWER: f64 = 2.0;
 const ANSWER_POINTS: f64 = 1e3;
+/// Samples of the record of a ramp.
+const SWEEP_POINTS: f64 = 1e4;
 
 /// Returns the number of readings of the drop over time: one period of the mains each, the last two around 200 ms.
 pub fn drop_count() -> usize {
@@ -53,6 +56,19 @@ impl Points {
             instrument: self.instrument(device),
             program,
             arguments: arguments.to_vec(),
+            shows: Vec::new(),
+        }
+    }
+
+    fn showing(
+        &self,
+        (channel, points): (f64, f64),
+        shows: impl IntoIterator<Item = Shown>,
+    ) -> Query {
+        let arguments = [("channel", channel), ("points", points)];
+        Query {
+            shows: shows.into_iter().collect(),
+            ..self.query(Device::Digitizer, "waveform", &arguments)
         }
     }
 
@@ -168,27 +184,59 @@ impl Points {
 
     /// Arms the digitizer for the step of the control voltage from one level to the other, after which the output must
     /// have answered within `within_s`.
-    pub fn capture_answer(&self, (from_v, to_v): (f64, f64), within_s: f64) -> Query {
+    pub fn capture_answer(&self, step_v: (f64, f64), within_s: f64) -> Query {
+        let record = (ANSWER * within_s, ANSWER_POINTS);
+        self.capture_edge(step_v.0.max(step_v.1), step_v, record)
+    }
+
+    /// Arms the digitizer for a ramp that begins with the step of the control voltage from one level to the other.
+    pub fn capture_sweep(&self, plan: &Plan, step_v: (f64, f64), record_s: f64) -> Query {
+        self.capture_edge(plan.control_v, step_v, (record_s, SWEEP_POINTS))
+    }
+
+    /// Arms the digitizer for a step of the control voltage, which is at most `most_v` in the record, and for a record
+    /// of this length and number of samples.
+    fn capture_edge(
+        &self,
+        most_v: f64,
+        (from_v, to_v): (f64, f64),
+        (record_s, points): (f64, f64),
+    ) -> Query {
         let program = match to_v > from_v {
             true => "capture",
             false => "capture_falling",
         };
-        let record_s = ANSWER * within_s;
         let arguments = [
-            ("control_v_per_div", from_v.max(to_v) / HALF_SCREEN),
+            ("control_v_per_div", most_v / HALF_SCREEN),
             ("output_v_per_div", LOAD_V / HALF_SCREEN),
             ("s_per_div", record_s / DIVISIONS),
             ("offset_s", (0.5 - BEFORE) * record_s),
-            ("points", ANSWER_POINTS),
+            ("points", points),
             ("level_v", f64::midpoint(from_v, to_v)),
         ];
         self.query(Device::Digitizer, program, &arguments)
     }
 
+    /// Runs a ramp of the control voltage.
+    pub fn sweep(&self, ramp: &Ramp) -> Query {
+        let arguments = [
+            ("from_v", ramp.first_v),
+            ("to_v", ramp.last_v()),
+            ("step_v", ramp.step_v.abs()),
+            ("dwell_s", ramp.dwell_s),
+            ("points", ramp.count as f64),
+        ];
+        self.query(Device::SmuIn, "ramp", &arguments)
+    }
+
+    /// Reads one channel of the record of a ramp.
+    pub fn swept(&self, channel: f64) -> Query {
+        self.showing((channel, SWEEP_POINTS), dc_shows(channel))
+    }
+
     /// Reads the output in the record of an answer.
     pub fn answer(&self) -> Query {
-        let arguments = [("channel", OUTPUT_CHANNEL), ("points", ANSWER_POINTS)];
-        self.query(Device::Digitizer, "waveform", &arguments)
+        self.showing((OUTPUT_CHANNEL, ANSWER_POINTS), dc_shows(OUTPUT_CHANNEL))
     }
 
     /// Proves that the record is complete.
@@ -198,8 +246,7 @@ impl Points {
 
     /// Reads one channel of the record.
     pub fn waveform(&self, plan: &Plan, channel: f64) -> Query {
-        let arguments = [("channel", channel), ("points", plan.samples())];
-        self.query(Device::Digitizer, "waveform", &arguments)
+        self.showing((channel, plan.samples()), dc_shows(channel))
     }
 
     /// Sets voltage and current limit of the AC source; its output is on afterwards.
@@ -276,7 +323,50 @@ impl Points {
 
     /// Reads one channel of a record with these scales.
     fn channel(&self, scales: &Scales, channel: f64) -> Query {
-        let arguments = [("channel", channel), ("points", scales.points)];
-        self.query(Device::Digitizer, "waveform", &arguments)
+        self.showing((channel, scales.points), ac_shows(scales, channel))
+    }
+}
+
+/// Returns a voltage that a channel shows.
+const fn volts(name: &'static str, factor: f64, offset: f64) -> Shown {
+    Shown {
+        name,
+        unit: "V",
+        step: 1e-3,
+        factor,
+        offset,
+    }
+}
+
+/// Returns what the trace shows of a load: its voltage, and its current by its resistance, ohm.
+fn load(factor: f64, offset: f64, ohm: f64) -> Vec<Shown> {
+    let current = Shown {
+        name: "load_current",
+        unit: "A",
+        step: 1e-6,
+        factor: factor / ohm,
+        offset: offset / ohm,
+    };
+    vec![volts("load_voltage", factor, offset), current]
+}
+
+/// Returns what a channel shows of a DC part: the output takes from the voltage of the load what it does not conduct.
+fn dc_shows(channel: f64) -> Vec<Shown> {
+    match channel == CONTROL_CHANNEL {
+        true => vec![volts("control_voltage", 1.0, 0.0)],
+        false => load(-1.0, LOAD_V, LOAD_OHM),
+    }
+}
+
+/// Returns what a channel shows of an AC part, without the corrections by the references.
+fn ac_shows(scales: &Scales, channel: f64) -> Vec<Shown> {
+    if channel == CONTROL_CHANNEL {
+        vec![volts("control_voltage", 1.0, 0.0)]
+    } else if channel == DIVIDED_CHANNEL {
+        vec![volts("output_voltage", ac_plan::DIVIDER, 0.0)]
+    } else if channel == SHUNT_CHANNEL {
+        load(scales.load_ohm / scales.shunt_ohm, 0.0, scales.load_ohm)
+    } else {
+        vec![volts("clamped_voltage", 1.0, 0.0)]
     }
 }

@@ -102,6 +102,8 @@ fn least_a() -> f64 {
 pub enum Method {
     /// Tests whether the output switches at both limits.
     Conformity,
+    /// Tests the limits like `Conformity`, then finds both voltages by a ramp each; DC parts only.
+    Ramp,
     /// Tests the limits like `Conformity`, then searches both voltages.
     Bisect,
 }

@@ -4,6 +4,7 @@
 pub mod bench;
 pub mod line_bench;
 
+use crate::dut::Recipe;
 use crate::dut::device::Rig;
 use crate::dut::em_relay::settings::ReferenceSet;
 use bench::{RIG, profiles, recipe, wiring};
@@ -11,6 +12,14 @@ use bench::{RIG, profiles, recipe, wiring};
 /// Returns what hinders the recipe with changes, on a rig with changes, with profiles whose texts `profile` changes.
 fn faults(
     recipe_changes: &[(&str, &str)],
+    rig_change: (&str, &str),
+    profile: impl Fn(&str, &str) -> String,
+) -> Vec<String> {
+    faults_of(&recipe(recipe_changes), rig_change, profile)
+}
+
+fn faults_of(
+    recipe: &Recipe,
     rig_change: (&str, &str),
     profile: impl Fn(&str, &str) -> String,
 ) -> Vec<String> {
@@ -25,7 +34,7 @@ fn faults(
         reference_parts: &ReferenceSet::default(),
         certificate: None,
     };
-    let all = recipe(recipe_changes).infeasible(&rig);
+    let all = recipe.infeasible(&rig);
     all.iter().map(ToString::to_string).collect()
 }
 
@@ -123,6 +132,39 @@ fn limits_that_conformity_cannot_decide_are_refused() {
     ] {
         assert_eq!(faults(&[(from, to)], NO_CHANGE, same).len(), 1, "{to}");
     }
+}
+
+#[test]
+fn a_ramp_needs_a_step_at_its_begin() {
+    let cases = [
+        (
+            "v_off_v = { low = 1.0 }",
+            "v_off_v = { low = 0.2 }",
+            "limits.v_off_v.low",
+        ),
+        (
+            "v_on_v = { high = 3.5 }",
+            "v_on_v = { high = 4.6 }",
+            "limits.v_on_v.high",
+        ),
+    ];
+    let ramp = ("method = \"bisect\"", "method = \"ramp\"");
+    assert_eq!(faults(&[ramp], NO_CHANGE, same), [""; 0]);
+    for (from, to, key) in cases {
+        let found = faults(&[ramp, (from, to)], NO_CHANGE, same);
+        assert!(found.len() == 1 && found[0].contains(key), "{found:?}");
+    }
+}
+
+#[test]
+fn a_ramp_of_an_ac_part_is_refused() {
+    let ramp = [("method = \"conformity\"", "method = \"ramp\"")];
+    let recipe = line_bench::recipe(line_bench::ZERO_CROSS, &ramp);
+    let found = faults_of(&recipe, NO_CHANGE, same);
+    assert!(
+        found.len() == 1 && found[0].contains("test.method"),
+        "{found:?}"
+    );
 }
 
 #[test]

@@ -37,6 +37,7 @@ fn query(image: &Image, name: &str, program: &'static str) -> Query {
         instrument: image.wiring().instrument_named(name).unwrap(),
         program,
         arguments: Vec::new(),
+        shows: Vec::new(),
     }
 }
 

@@ -142,6 +142,7 @@ function showPart(part) {
   const missing = new Set(part.reason_codes.map((it) => it.param).filter((it) => it && !isMeasured(it)));
   values.push(...Array.from(missing, (it) => row(nameOf(it), NONE, NONE, NONE, unitOf(it), NONE, verdictCell(part.verdict))));
   at("part_values").replaceChildren(...values);
+  showCurves(part);
   showTestBars(part);
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
     row(nameOf(it.parameter), wordOr("line-" + sample.line, sample.line), wordOr("module-" + sample.module, sample.module), sample.channel,

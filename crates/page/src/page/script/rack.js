@@ -1,7 +1,7 @@
 // The rack of a rig that tests batches: plan of the sockets, and the air with the switchings of each socket.
 
-// Drawing of the air, pixels: size before layout, room for the numbers beside it, least distance between numbers.
-const AIR = {wide: 640, high: 230, left: 48, below: 24, above: 8, apartX: 64, apartY: 18};
+// Size of the drawing of the air before the page has given it one, pixels.
+const AIR = {wide: 640, high: 230};
 
 function showRack() {
   const rack = view.machine?.rack;
@@ -70,35 +70,19 @@ function showAir(test) {
 
 // Draws set point and reference over time, and each switching as a mark on the reference; sizes in pixels.
 function airDrawing(test, wide, high) {
-  const {left, below, above, apartX, apartY} = AIR;
-  const svg = drawn("svg", {viewBox: "0 0 " + wide + " " + high, role: "img", "aria-label": word("rack-curve")});
   const {t_s: times, set_c: set, reference_c: air} = test?.curve ?? {t_s: [], set_c: [], reference_c: []};
-  if (times.length < 2) return svg;
-  const all = [...air, ...set.filter(Number.isFinite)], end = times.at(-1);
-  const low = Math.floor(Math.min(...all) / 10) * 10, top = Math.ceil(Math.max(...all) / 10) * 10 || low + 10;
-  const x = (t) => left + (wide - left) * t / end, y = (c) => high - below - (high - below - above) * (c - low) / (top - low || 1);
-  const say = (text, right, down, anchor) => {
-    const label = drawn("text", {x: right, y: down, "text-anchor": anchor, class: "label"});
-    label.textContent = text;
-    svg.append(label);
-  };
-  const rule = (d) => svg.append(drawn("path", {d, class: "rule"}));
-  const most = (room, apart) => Math.max(1, room / apart);
-  const degrees = [10, 20, 50].find((it) => (top - low) / it <= most(high - below - above, apartY)) ?? 100;
-  for (let c = Math.ceil(low / degrees) * degrees; c <= top; c += degrees) {
-    rule("M" + left + " " + y(c) + "H" + wide);
-    say(c + " °C", left - 4, y(c) + 4, "end");
-  }
-  const step = [1, 2, 5, 10, 20, 30, 60].find((it) => end / 60 / it <= most(wide - left, apartX)) ?? 120;
-  for (let minute = step; minute * 60 <= end; minute += step) {
-    rule("M" + x(minute * 60) + " " + above + "V" + (high - below));
-    say(minute + " min", Math.min(wide, x(minute * 60)), high - 6, minute * 60 > .95 * end ? "end" : "middle");
-  }
-  const line = (values) => values.flatMap((c, place) => (c === null ? [] :
-    [(place && values[place - 1] !== null ? "L" : "M") + x(times[place]).toFixed(1) + " " + y(c).toFixed(1)])).join("");
-  svg.append(drawn("path", {d: line(set), class: "set"}), drawn("path", {d: line(air), class: "reference"}));
-  const mark = (t, up) => "M" + x(t).toFixed(1) + " " + (y(airAt(test.curve, t)) + (up ? -3 : 3)).toFixed(1) + "v" + (up ? -9 : 9);
+  const all = [...air, ...set.filter(Number.isFinite)], low = Math.floor(Math.min(...all) / 10) * 10;
+  const top = Math.ceil(Math.max(...all) / 10) * 10 || low + 10;
+  if (times.length < 2) return drawn("svg", {role: "img", "aria-label": word("rack-curve")});
+  const across = {from: 0, to: times.at(-1) / 60, text: (it) => (it ? it + " min" : ""), steps: [1, 2, 5, 10, 20, 30, 60, 120]};
+  const {svg, x, y, path, line} = plot(word("rack-curve"), [wide, high], across,
+    {from: low, to: top, text: (it) => it + " °C", steps: [10, 20, 50, 100]});
+  const over = (values) => values.map((celsius, place) => [times[place] / 60, celsius]);
+  line(over(set), "set");
+  line(over(air), "reference");
+  const mark = (t, up) => "M" + x(t / 60).toFixed(1) + " " + (y(airAt(test.curve, t)) + (up ? -3 : 3)).toFixed(1) + "v" + (up ? -9 : 9);
   const marks = (key, up) => test.switched.flatMap((it) => it[key].map((t) => mark(t, up))).join("");
-  svg.append(drawn("path", {d: marks("opened_s", true), class: "opened"}), drawn("path", {d: marks("closed_s", false), class: "closed"}));
+  path(marks("opened_s", true), "opened");
+  path(marks("closed_s", false), "closed");
   return svg;
 }

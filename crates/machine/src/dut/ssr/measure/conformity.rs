@@ -23,9 +23,9 @@ use crate::instrument::query::Query;
 use units::Span;
 
 /// Share of the load from which the output counts as on.
-const ON: f64 = 0.9;
+pub const ON: f64 = 0.9;
 /// Share of the load up to which it counts as off.
-const OFF: f64 = 0.1;
+pub const OFF: f64 = 0.1;
 /// Length of the stretch after the time limit whose samples show whether the output has answered in time, as a share of
 /// the limit.
 const AT: f64 = 0.05;

@@ -19,6 +19,7 @@ mod given;
 mod input;
 mod leakage;
 pub(super) mod line;
+pub(super) mod ramp;
 mod resistance;
 mod stage;
 mod state;
@@ -101,7 +102,7 @@ impl Test {
     }
 
     fn enter(&mut self, stage: Stage, now: RigTime) {
-        if stage.repeated() != self.stage.repeated() {
+        if stage != self.stage {
             self.repeats_left = None;
         }
         self.stage = stage;
@@ -116,7 +117,7 @@ impl Test {
         record.spent.add(self.runner.spent());
         record.took(self.stage.key(), now.since(self.began));
         let seen = std::mem::take(&mut self.runner.readings.trace);
-        record.trace.append(seen);
+        record.trace.append(seen.of_stage(self.stage.name()));
         self.began = now;
     }
 
@@ -150,7 +151,7 @@ impl Test {
         } else if let Next::Insert(stage) = next {
             self.stages.push_front(stage);
         } else if self.repeats() {
-            self.stages.push_front(self.stage.repeated());
+            self.stages.push_front(self.stage);
         }
     }
 

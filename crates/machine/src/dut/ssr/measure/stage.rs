@@ -138,14 +138,6 @@ impl Stage {
         matches!(self, Self::SourcesOff | Self::Discharge)
     }
 
-    /// Returns the stage that a repetition enters: the one that takes the record.
-    pub const fn repeated(self) -> Self {
-        match self {
-            Self::Ac(stage) => Self::Ac(stage.recorded_by()),
-            other => other,
-        }
-    }
-
     /// Returns the characteristics that a repetition of the stage measures again.
     pub const fn measures(self) -> &'static [Parameter] {
         match self {

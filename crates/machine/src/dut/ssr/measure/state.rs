@@ -172,7 +172,6 @@ impl State {
             AcStage::Conducts(shift) => conforms::conduct_acts(self, shift, plan, ac, points),
             AcStage::Threshold(way) => staircase::acts(self, way, plan, ac, points),
             AcStage::Train => train::acts(self, plan, ac, points),
-            AcStage::TrainLine => train::line_acts(ac, points),
             AcStage::LoopReady => line::ready_acts(self, ac, points),
             AcStage::Loop => looped::acts(self, plan, ac, points),
         }
@@ -253,7 +252,6 @@ impl State {
             AcStage::Conducts(shift) => conforms::conclude_conducts(self, shift, plan, ac, given)?,
             AcStage::Threshold(way) => staircase::conclude(self, way, plan, ac, given)?,
             AcStage::Train => train::conclude(self, plan, ac, given)?,
-            AcStage::TrainLine => train::conclude_line(self, plan, ac, given)?,
             AcStage::LoopReady => line::conclude_ready(self, ac, given),
             AcStage::Loop => looped::conclude(self, plan, ac, given)?,
         })

@@ -52,6 +52,28 @@ fn a_good_part_passes_with_its_true_values() {
 }
 
 #[test]
+fn the_record_of_the_times_has_their_marks() {
+    let record = tested(good()).record();
+    let of = |name: &str| -> Vec<(u64, f64)> {
+        let all = record.trace.samples().iter();
+        let own = all.filter(|it| it.signal.name == name);
+        own.map(|it| (it.at.0, it.value)).collect()
+    };
+    let [(begin_us, begin_s), (end_us, end_s)] = of("Timing").try_into().unwrap();
+    assert!(begin_s < 0.0 && end_s > 0.0 && begin_us < end_us);
+    let trigger_us = begin_us as f64 - begin_s * 1e6;
+    let [on_us, off_us] = ["switch_on", "switch_off"].map(|name| of(name)[0].0 as f64 - trigger_us);
+    assert!((on_us - good().on_s * 1e6).abs() < 20.0, "{on_us}");
+    assert!((off_us - on_us - 1900.0).abs() < 40.0, "{off_us}");
+    for name in ["control_voltage", "load_voltage", "load_current"] {
+        let inside = of(name)
+            .into_iter()
+            .filter(|it| (begin_us..=end_us).contains(&it.0));
+        assert!((250..=300).contains(&inside.count()), "{name}");
+    }
+}
+
+#[test]
 fn every_finding_of_a_part_goes_to_its_bin() {
     use Finding as F;
     type Change = fn(&mut Part);
@@ -234,6 +256,28 @@ fn conformity_alone_decides_without_a_voltage() {
     assert_eq!(test.verdict(), Verdict::Pass);
     assert_eq!(test.record().result(Parameter::TurnOnVoltage), None);
     assert_eq!(test.record().result(Parameter::TurnOffVoltage), None);
+}
+
+#[test]
+fn two_ramps_find_both_thresholds() {
+    let ramps = [("method = \"bisect\"", "method = \"ramp\"")];
+    for turn_on_v in [1.4, 2.003, 2.41, 3.3] {
+        let part = changed(|it| (it.turn_on_v, it.turn_off_v) = (turn_on_v, turn_on_v - 0.18));
+        let mut bench = Bench::with(part);
+        let test = bench.tested(recipe(&ramps), false);
+        assert_eq!(test.verdict(), Verdict::Pass, "{turn_on_v} V");
+        for (of, truth) in [
+            (Parameter::TurnOnVoltage, turn_on_v),
+            (Parameter::TurnOffVoltage, turn_on_v - 0.18),
+        ] {
+            let reading = test.record().result(of).unwrap();
+            let error = (reading.value - truth).abs();
+            assert!(error <= reading.expanded(), "{of:?}: {reading:?}, {truth}");
+            assert!(reading.expanded() < 0.012, "{reading:?}");
+        }
+        let sweeps = bench.log.iter().filter(|it| it.as_str() == "query ramp");
+        assert_eq!(sweeps.count(), 2);
+    }
 }
 
 #[test]

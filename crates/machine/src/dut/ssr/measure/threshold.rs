@@ -1,9 +1,10 @@
-//! Turn-on and turn-off voltage of a DC part by a search. The output switches with hysteresis, so each step begins from
-//! 0 V, or from the nominal voltage for the turn-off.
+//! Turn-on and turn-off voltage of a DC part by a search, or by a [`ramp`]. The output switches with hysteresis, so each
+//! step begins from 0 V, or from the nominal voltage for the turn-off.
 
 use super::conformity::{is_off, is_on};
 use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
+use super::ramp;
 use super::stage::Stage;
 use super::state::{Next, State};
 use crate::dut::ssr::accuracy;
@@ -22,6 +23,9 @@ const ROUNDING_V: f64 = 1e-9;
 
 /// Returns the acts of one step; none when no interval is proven to hold the threshold.
 pub fn acts(state: &mut State, direction: Direction, plan: &Plan, points: &Points) -> Vec<Act> {
+    if plan.ramps {
+        return ramp::acts(state, direction, plan, points);
+    }
     let Some(search) = state.search.or_else(|| interval(state, direction, plan)) else {
         return Vec::new();
     };
@@ -68,6 +72,9 @@ pub fn conclude(
     plan: &Plan,
     given: &Given,
 ) -> Result<Next, NotDelivered> {
+    if plan.ramps {
+        return ramp::conclude(state, direction, plan, given);
+    }
     let Some(mut search) = state.search else {
         return Ok(Next::Planned);
     };

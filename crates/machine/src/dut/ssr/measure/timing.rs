@@ -7,6 +7,7 @@ use super::state::{Next, Pulses, State};
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::accuracy;
 use crate::dut::ssr::edges::{Crossing, Edges, pulse};
+use crate::dut::ssr::marks;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::{LOAD_V, Plan};
 use crate::dut::ssr::points::{Device, Points};
@@ -62,6 +63,15 @@ pub fn conclude(state: &mut State, plan: &Plan, given: &Given) -> Result<Next, N
         state.record.stop(Finding::PulseNotRecorded);
         return Ok(Next::Planned);
     };
+    let trace = &mut state.record.trace;
+    edges
+        .on
+        .iter()
+        .for_each(|it| trace.mark(marks::ON, it.at_s));
+    edges
+        .off
+        .iter()
+        .for_each(|it| trace.mark(marks::OFF, it.at_s));
     let Some(on) = edges.on else {
         if plan.bounds(Parameter::TurnOnTime) {
             state.record.stop(Finding::TurnsOnTooLate);

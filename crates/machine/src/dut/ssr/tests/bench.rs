@@ -191,6 +191,8 @@ pub struct Bench {
     /// Whether the output was on before the recorded edge, and whether it is long after it.
     answer: (bool, bool),
     control_v: f64,
+    /// Control voltage before a recorded ramp and at each of its levels, and whether the output is on then.
+    ramp: Vec<(f64, bool)>,
 }
 
 impl Bench {
@@ -216,6 +218,7 @@ impl Bench {
             waits: None,
             answer: (false, false),
             control_v: 0.0,
+            ramp: Vec::new(),
         }
     }
 
@@ -368,6 +371,16 @@ impl Bench {
                 self.control(given("level_v"));
                 vec![self.input_a(given("before_v"))]
             }
+            (Device::SmuIn, "ramp") => {
+                let sign = (given("to_v") - given("from_v")).signum();
+                self.ramp = vec![(self.control_v, self.is_lit)];
+                for number in 0..given("points") as u32 {
+                    self.control(given("from_v") + sign * given("step_v") * f64::from(number));
+                    self.ramp.push((self.control_v, self.is_lit));
+                }
+                assert!((self.control_v - given("to_v")).abs() < 1e-6);
+                self.ramp.iter().map(|it| it.0).collect()
+            }
             (Device::SmuIn | Device::SmuOut, "off") => {
                 match device == Device::SmuIn {
                     true => self.control(0.0),
@@ -408,6 +421,7 @@ impl Bench {
             }
             (Device::Digitizer, "capture" | "capture_falling") => {
                 self.record_s = (10.0 * given("s_per_div"), given("points"));
+                self.ramp = Vec::new();
                 self.waits = Some((given("level_v"), query.program == "capture_falling"));
                 Vec::new()
             }

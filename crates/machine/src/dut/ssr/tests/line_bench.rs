@@ -344,7 +344,11 @@ impl LineBench {
                 Vec::new()
             }
             (Device::Digitizer, "waveform") => {
-                let volts = self.memory[given("channel") as usize - 1].clone();
+                // The channel of the control input, which no figure needs, stays at 0 V.
+                let volts = match (given("channel") as usize).checked_sub(2) {
+                    Some(channel) => self.memory[channel].clone(),
+                    None => vec![0.0; self.memory[0].len()],
+                };
                 let step_s = self.record.0 / self.record.1;
                 return Delivered {
                     numbers: Vec::new(),

@@ -50,9 +50,6 @@ pub enum AcStage {
     Threshold(Direction),
     /// Train of pulses that meet the mains at several phases.
     Train,
-    /// The record of the train once more, with the load current, after the first look has not found a whole answer to
-    /// each pulse.
-    TrainLine,
     /// The AC source goes to the voltage of the loop.
     LoopReady,
     /// Drop at the rated current.
@@ -63,7 +60,7 @@ pub enum AcStage {
 
 impl AcStage {
     /// Every stage.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 19] = [
         Self::Reference(Reference::Zero),
         Self::Reference(Reference::Gain),
         Self::Reference(Reference::Ratio),
@@ -80,19 +77,10 @@ impl AcStage {
         Self::Threshold(Direction::Rising),
         Self::Threshold(Direction::Falling),
         Self::Train,
-        Self::TrainLine,
         Self::LoopReady,
         Self::Loop,
         Self::LeakageHot,
     ];
-
-    /// Returns the stage whose record this stage reads; of every other stage, itself.
-    pub const fn recorded_by(self) -> Self {
-        match self {
-            Self::TrainLine => Self::Train,
-            other => other,
-        }
-    }
 
     /// Returns the label, which names the stage in views and gives the key of its time.
     pub const fn label(self) -> Label {
@@ -102,7 +90,7 @@ impl AcStage {
             Self::Blocks(_) => Label::Blocks,
             Self::Conducts(_) => Label::Conducts,
             Self::Threshold(_) => Label::Threshold,
-            Self::Train | Self::TrainLine => Label::Timing,
+            Self::Train => Label::Timing,
             Self::LoopReady | Self::Loop => Label::OnState,
             Self::LeakageHot => Label::LeakageHot,
         }
@@ -116,7 +104,7 @@ impl AcStage {
         };
         match self {
             Self::Leakage => &[LeakageCold, LeakageResistive, LeakageCapacitive],
-            Self::Train | Self::TrainLine => &[TurnOnTime, TurnOffTime, ZeroCross, Retrigger],
+            Self::Train => &[TurnOnTime, TurnOffTime, ZeroCross, Retrigger],
             Self::Loop => &[Drop, DropRms, DcOffset, Distortion, HalfWave, Drift],
             Self::LeakageHot => &[LeakageHot],
             Self::Reference(_)

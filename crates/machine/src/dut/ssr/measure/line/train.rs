@@ -3,18 +3,17 @@
 
 use super::super::board::{Position, RELAY};
 use super::super::given::{Given, NotDelivered};
-use super::super::stage::Stage;
 use super::super::state::{Next, Pulses, State};
-use super::stage::AcStage;
 use super::{STORED, close, conclude_ready, leave, loop_level};
 use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
 use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM};
+use crate::dut::ssr::marks;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
-use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
+use crate::dut::ssr::program::{CONTROL_CHANNEL, DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::references::References;
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::mains::Mains;
@@ -28,6 +27,14 @@ use units::{Span, Unit};
 /// with random turn-on counts: nearer to zero the load current is too small to latch.
 const LATCHES: f64 = 0.3;
 
+/// Channels of the record that the test reads. The source takes longer to go to the voltage of the loop than the
+/// digitizer to deliver them.
+const CHANNELS: [f64; 4] = [
+    CONTROL_CHANNEL,
+    DIVIDED_CHANNEL,
+    OUTPUT_CHANNEL,
+    SHUNT_CHANNEL,
+];
 /// Time from a zero of the mains within which the voltage shows the time of a turn-on, microseconds.
 const NEAR_US: f64 = 400.0;
 /// Share of the clamp voltage up to which the clamped channel follows the signal, so that it can be compared with the
@@ -57,17 +64,11 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
         Act::Wait(Span::seconds(scales.record_s) + STORED),
     ]);
     acts.extend(leave(state, points));
-    let mut queries = points.record(&scales, &[DIVIDED_CHANNEL, OUTPUT_CHANNEL]);
+    let mut queries = points.record(&scales, &CHANNELS);
     queries.extend(state.end_pulses(points));
     queries.extend(loop_level(state, ac, points));
     acts.push(Act::Query(queries));
     acts
-}
-
-/// Returns the acts that read the record of the train once more, with the load current.
-pub fn line_acts(ac: &AcPlan, points: &Points) -> Vec<Act> {
-    let channels = [DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL];
-    vec![Act::Query(points.record(&ac.train(), &channels))]
 }
 
 /// Mains and answers of the output, read from the record of a train.
@@ -168,30 +169,16 @@ pub fn conclude(
     plan: &Plan,
     ac: &AcPlan,
     given: &Given,
-) -> Result<Next, NotDelivered> {
-    conclude_ready(state, ac, given);
-    let [divided, clamped] = given.waveforms()?;
-    let walk = walk(ac, state.references, [&divided, &clamped]);
-    if !walk.as_ref().is_some_and(Walk::is_whole) {
-        return Ok(Next::Insert(Stage::Ac(AcStage::TrainLine)));
-    }
-    judge(state, plan, ac, walk);
-    Ok(Next::Planned)
-}
-
-/// Concludes the train after a second look at its record: the output answers wrongly or conducts well, or the line has
-/// died.
-pub fn conclude_line(
-    state: &mut State,
-    plan: &Plan,
-    ac: &AcPlan,
-    given: &Given,
 ) -> Result<Next, Reason> {
-    let [divided, clamped, shunt] = given.waveforms()?;
-    if !lives(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))? {
+    conclude_ready(state, ac, given);
+    let [_control, divided, clamped, shunt] = given.waveforms()?;
+    let walk = walk(ac, state.references, [&divided, &clamped]);
+    // On a line that has died the output answers wrongly, or seems to conduct well.
+    if !walk.as_ref().is_some_and(Walk::is_whole)
+        && !lives(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))?
+    {
         return Err(Finding::LineDead.into());
     }
-    let walk = walk(ac, state.references, [&divided, &clamped]);
     judge(state, plan, ac, walk);
     Ok(Next::Planned)
 }
@@ -202,6 +189,7 @@ fn judge(state: &mut State, plan: &Plan, ac: &AcPlan, walk: Option<Walk>) {
         state.record.stop(Finding::PulseNotRecorded);
         return;
     };
+    mark(state, &walk);
     if walk.answers.iter().any(|it| it.on.is_none()) {
         if plan.bounds(Parameter::TurnOnTime) {
             state.record.stop(Finding::TurnsOnTooLate);
@@ -213,6 +201,19 @@ fn judge(state: &mut State, plan: &Plan, ac: &AcPlan, walk: Option<Walk>) {
         off_found(state, plan, &walk);
     } else if plan.bounds(Parameter::TurnOffTime) {
         state.record.stop(Finding::TurnsOffTooLate);
+    }
+}
+
+/// Marks the zeros of the mains from which times count, and the instants at which the output switches.
+fn mark(state: &mut State, walk: &Walk) {
+    let trace = &mut state.record.trace;
+    for it in &walk.answers {
+        trace.mark(marks::ZERO, it.zero_s);
+        it.on.iter().for_each(|on| trace.mark(marks::ON, on.at_s));
+        trace.mark(marks::ZERO, it.off_zero_s);
+        it.off_s
+            .iter()
+            .for_each(|off_s| trace.mark(marks::OFF, *off_s));
     }
 }
 

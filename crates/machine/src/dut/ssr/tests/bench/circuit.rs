@@ -75,7 +75,15 @@ impl Bench {
             let off = 0.1 - (at_s - self.pulse_s - part.off_s) / edge_s;
             on.clamp(0.0, 1.0).min(off.clamp(0.0, 1.0))
         };
+        let level_s = 0.7 * record_s / self.ramp.len() as f64;
+        let ramp = |at_s: f64| {
+            let number = (at_s / level_s).floor() + 1.0;
+            let number = (number.max(0.0) as usize).min(self.ramp.len() - 1);
+            self.ramp[number]
+        };
         let volts = |at_s: f64| match channel {
+            1.0 if !self.ramp.is_empty() => ramp(at_s).0,
+            3.0 if !self.ramp.is_empty() => 8.0 - 7.99 * f64::from(u8::from(ramp(at_s).1)),
             1.0 => 5.0 * pulse(at_s),
             3.0 => 8.0 - 7.99 * load(at_s),
             other => panic!("channel {other}"),
