@@ -158,7 +158,7 @@ fn a_ramp_needs_a_step_at_its_begin() {
 
 #[test]
 fn a_ramp_of_an_ac_part_is_refused() {
-    let ramp = [("method = \"conformity\"", "method = \"ramp\"")];
+    let ramp = [("method = \"bisect\"", "method = \"ramp\"")];
     let recipe = line_bench::recipe(line_bench::ZERO_CROSS, &ramp);
     let found = faults_of(&recipe, NO_CHANGE, same);
     assert!(

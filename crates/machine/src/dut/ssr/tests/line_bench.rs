@@ -344,11 +344,7 @@ impl LineBench {
                 Vec::new()
             }
             (Device::Digitizer, "waveform") => {
-                // The channel of the control input, which no figure needs, stays at 0 V.
-                let volts = match (given("channel") as usize).checked_sub(2) {
-                    Some(channel) => self.memory[channel].clone(),
-                    None => vec![0.0; self.memory[0].len()],
-                };
+                let volts = self.memory[given("channel") as usize - 1].clone();
                 let step_s = self.record.0 / self.record.1;
                 return Delivered {
                     numbers: Vec::new(),
