@@ -33,7 +33,7 @@ pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
         let accepted = it.accepted_error(rated_v)?;
         // A lot without values has no true ones either, and misses any bar.
         let truth = errors.median_truth().unwrap_or(0.0);
-        Some(accepted.rms + accepted.share * truth.abs())
+        Some(((accepted.rms + accepted.share * truth.abs()) * 1e4).round() / 1e4)
     };
     let row = |characteristic: Characteristic, errors: &Pooled| {
         let (n, rms) = (errors.n(), errors.median_rms());
