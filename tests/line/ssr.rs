@@ -50,8 +50,15 @@ fn every_part_lands_in_the_bin_of_its_defect() {
 const BAD_LINE: &str = "[mains]\nthird_pct = 5.0\nfifth_pct = 6.0\namplitude_sd_pct = 2.0\n\
     frequency_sd_hz = 0.1\nphase_sd_us = 30.0\nslow_s = 2.0\n";
 
-/// Lines of other plants: changes of the recipe, and the world.
-const LINES: [(&str, &[(&str, &str)], &str); 3] = [
+/// A line of another plant: what it is, changes of the recipe, and the world.
+type Line = (
+    &'static str,
+    &'static [(&'static str, &'static str)],
+    &'static str,
+);
+
+/// Lines of other plants.
+const LINES: [Line; 3] = [
     (
         "of 115 V and 60 Hz",
         &[
