@@ -99,7 +99,7 @@ test("after a failed fetch a page offers another try", async () => {
   await page.click("#fetch_again");
   await shown(page, "#fetch_state", WORDS["fetch-missing"].en);
   await page.click('nav a[href="#lots"]');
-  assert.ok(await page.isVisible("#l_book tr"));
+  await page.waitForSelector("#l_book tr");
   await page.click('nav a[href="#history"]');
   await page.unroute("**/page/*");
   await page.click("#fetch_again");
@@ -118,7 +118,7 @@ test("fetched pages stay without the rig in both languages", async () => {
   await page.click('nav a[href="#operator"]');
   await shown(page, "#link", WORDS["link-lost"].zh);
   await page.click('nav a[href="#recipes"]');
-  assert.ok(await page.isVisible("#r_fields td"));
+  await page.waitForSelector("#r_fields td");
   await page.click('nav a[href="#trace"]');
   await shown(page, "#fetch_state", WORDS["fetch-missing"].zh);
   await rig.again();

@@ -37,7 +37,7 @@ test("start without a lot points to the page Lots", async () => {
   const page = await visit(browser, rig, { role: "operator" });
   await rig.until("stopped", (view) => view.machine.state === "Stopped");
   await page.click('#orders [data-order="reset"]');
-  await rig.until("idle", (view) => view.machine.state === "Idle");
+  await page.waitForSelector(`#orders [data-order="start"][title="${WORDS["refusal-no_lot"].en}"]`);
   await page.click('#orders [data-order="start"]', { force: true });
   await shown(page, "#order_answer", WORDS["refusal-no_lot"].en);
   await looks(page, "operator-no-lot");
