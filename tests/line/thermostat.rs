@@ -67,6 +67,43 @@ fn a_batch_of_forty_agrees_with_the_truth() {
     }
 }
 
+/// A line whose modules answer late, and the times that they are allowed.
+const SLOW: [(&str, &str, &str); 4] = [
+    (
+        "sim.toml",
+        "latency_ms_mean = 2.0 ",
+        "latency_ms_mean = 50.0 ",
+    ),
+    (
+        "rig.toml",
+        "digital_allowance_ms = 30 ",
+        "digital_allowance_ms = 105 ",
+    ),
+    (
+        "rig.toml",
+        "analog_allowance_ms = 60 ",
+        "analog_allowance_ms = 135 ",
+    ),
+    (
+        "rig.toml",
+        "estop_reaction_ms = 900 ",
+        "estop_reaction_ms = 1900 ",
+    ),
+];
+
+#[test]
+fn a_slow_line_voids_no_part() {
+    let workshop = Workshop::new("thermostat-slow");
+    for (file, from, to) in SLOW {
+        workshop.change(&format!("config/rigs/thermostat/{file}"), from, to);
+    }
+    let said = workshop.run(&format!("{RUN} --lot A --count 40 --seed 1"));
+    let rows = objects(&said.with_status(0).stdout);
+    let parts = rows.iter().filter(|it| it["type"] == "part");
+    let judged = parts.filter(|it| it["verdict"] != "void").count();
+    assert_eq!(judged, 40);
+}
+
 /// Returns the least number of values out of `all` whose U must cover the truth: an honest U, which covers 93 % or
 /// more, falls below this number in less than one lot of a hundred.
 fn least_covered(all: usize) -> usize {

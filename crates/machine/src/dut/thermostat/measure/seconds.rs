@@ -200,7 +200,8 @@ impl Seconds {
             .extend(pulses.map(|(place, found)| (place, Pulse::of(at_s, found))));
     }
 
-    /// Takes the readings of a second; returns its command, or `None` when all passes are over.
+    /// Takes the readings of a second; returns its command, or `None` when all passes are over. On a slow line the pulses
+    /// through the contacts may take longer than a second: the readings then count for each second that has passed.
     fn second(
         &mut self,
         device: &Device,
@@ -218,9 +219,12 @@ impl Seconds {
             self.start(device, reading.value);
         }
         self.tick = self.tick + SECOND;
+        let mut passed = 1;
         while self.tick + SECOND < now {
             self.tick = self.tick + SECOND;
             self.record.push(f64::NAN);
+            self.slope.step(reading.value);
+            passed += 1;
         }
         self.record.push(reading.value);
         self.draw(reading.value);
@@ -242,7 +246,13 @@ impl Seconds {
             return Ok(Some(Command::OFF));
         };
         let recorded = (&self.record, &parts as &dyn Fn() -> Vec<Shown>);
-        let next = work.step(device, self.experiment, &seen, recorded)?;
+        let mut next = Some(self.command);
+        for _ in 0..passed {
+            next = work.step(device, self.experiment, &seen, recorded)?;
+            if next.is_none() {
+                break;
+            }
+        }
         self.ambient_c = work.ambient_c().unwrap_or(self.ambient_c);
         self.command = next.unwrap_or(Command::OFF);
         Ok(next)
