@@ -18,8 +18,8 @@ pub(crate) fn trace_path(stem: &Path, at_ms: i64, line: &str) -> PathBuf {
 
 /// Deletes the traces of all but the newest alarms, and of alarms that are too old at `now_ms`. Logs a failed deletion.
 ///
-/// A trace dated after `now_ms` was written before somebody set the clock back. Such a trace counts as older than all
-/// others, so that it never displaces a new one.
+/// A trace dated after `now_ms` comes from before the clock was set back. It counts as older than all others, so that it
+/// never displaces a new one.
 pub(crate) fn tidy(stem: &Path, keep: &HistorySettings, now_ms: i64) {
     let files = trace_files(stem);
     let alarms: BTreeSet<(bool, i64)> = files

@@ -3,7 +3,7 @@
 //! A name may fail five times within five minutes, all names together thirty times. Then the next attempt must wait
 //! until the oldest of these failures is five minutes old. A right password clears the failures of its name, and so
 //! does an engineer who unlocks the name. The file keeps the failures, so that a restart clears none. A failure dated
-//! in the future, noted before somebody set the clock back, does not count.
+//! in the future, from before the clock was set back, does not count.
 
 use super::{Register, digest};
 use crate::access::error::{Doing, Result};

@@ -148,38 +148,57 @@ fn the_current_ends_at_its_zero() {
     }
 }
 
+/// Samples of the end of a record in the loop at the rated current: 200 ms.
+const LOOPED: usize = 20_000;
+
+/// Returns the end of a record in the loop: voltage over the output, and its current, amperes.
+fn looped(hand: &mut Hand, hz: f64) -> [Vec<f64>; 2] {
+    hand.in_loop(hz);
+    hand.scales([1.0, 0.1, 0.5, 0.02], (0.25, 25_000));
+    let [_, _, clamped, shunt] = hand.pulsed((1.0, 0.4, 1), 25_000);
+    let from = 25_000 - LOOPED;
+    let amps = shunt[from..].iter().map(|it| it / 0.01).collect();
+    [clamped[from..].to_vec(), amps]
+}
+
 #[test]
 fn the_drop_at_rated_current_is_the_true_one() {
     for (output, hz) in [("ac_zero_cross", 50.0), ("ac_random", 60.0)] {
         let mut hand = rig(output, (230.0, hz), 3, QUIET);
-        hand.in_loop(hz);
-        hand.scales([1.0, 0.1, 0.5, 0.02], (0.25, 25_000));
-        let [_, _, clamped, shunt] = hand.pulsed((1.0, 0.4, 1), 25_000);
-        let whole = (0.2 * 1e5) as usize;
-        let from = 25_000 - whole;
-        let amps: Vec<f64> = shunt.iter().map(|it| it / 0.01).collect();
-        let amps_rms = rms(&amps[from..]);
+        let [volts, amps] = looped(&mut hand, hz);
+        let amps_rms = rms(&amps);
         assert!((4.5..5.3).contains(&amps_rms), "{amps_rms}");
         let peak_a = 5.0 * std::f64::consts::SQRT_2;
-        let near: Vec<f64> = (from..25_000)
+        let near: Vec<f64> = (0..LOOPED)
             .filter(|n| amps[*n].abs() > 6.0)
-            .map(|n| clamped[n].abs() + 0.045 * (peak_a - amps[n].abs()))
+            .map(|n| volts[n].abs() + 0.045 * (peak_a - amps[n].abs()))
             .collect();
         let drop_v = near.iter().sum::<f64>() / near.len() as f64;
         let true_v = hand.figure("v_drop_v");
         // The current has warmed the part by some kelvin.
         assert!((drop_v - true_v).abs() < 8e-3, "{drop_v} {true_v}");
-        let offset_v = clamped[from..].iter().sum::<f64>() / whole as f64;
+        let offset_v = volts.iter().sum::<f64>() / LOOPED as f64;
         let true_mv = hand.figure("dc_offset_mv");
         assert!(
             (offset_v * 1e3 - true_mv).abs() < 2.0,
             "{offset_v} {true_mv}"
         );
-        let distortion_mv = distortion(&clamped[from..], hz) * 1e3;
+    }
+}
+
+/// A part whose junction stays cold: the truth is the distortion of a cold part.
+const COLD: &str = "[ssr_ac]\njunction_k_per_w_mean = 1e-6\njunction_k_per_w_sd = 0.0\n";
+
+#[test]
+fn the_distortion_of_a_cold_part_is_the_true_one() {
+    for (output, hz) in [("ac_zero_cross", 50.0), ("ac_random", 60.0)] {
+        let world = format!("{QUIET}{COLD}");
+        let mut hand = rig(output, (230.0, hz), 3, &world);
+        let [volts, _] = looped(&mut hand, hz);
+        let distortion_mv = distortion(&volts, hz) * 1e3;
         let true_mv = hand.figure("wave_dist_mv");
-        // The junction warms by some kelvin within each half period, which takes millivolts off the end of the drop.
         assert!(
-            (distortion_mv - true_mv).abs() < 12.0,
+            (distortion_mv / true_mv - 1.0).abs() < 0.02,
             "{distortion_mv} {true_mv}"
         );
     }
