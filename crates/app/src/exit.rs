@@ -9,7 +9,9 @@
 //!   or a failed assertion in `lot/mod.rs` and `service/mod.rs`; for a lot that the rig refuses before it begins in
 //!   `admission.rs`; for reference parts without a calibration in `calibration/mod.rs`;
 //! - written as a row by `lot/journal.rs` (a refused lot: `admission.rs`) and `history/src/run_end.rs`;
-//! - printed by `src/cli/terminal.rs` (`--json`), `src/cli/lot.rs` (`lot show`) and `src/cli/history/lots.rs`.
+//! - printed on stdout as JSON (`--json`) by `src/cli/terminal.rs`, `src/cli/calibrate.rs` and `src/cli/experiment.rs`;
+//! - shown to people by `src/cli/terminal.rs` (log of alarms on stderr), `src/cli/lot.rs` (`lot show`),
+//!   `src/cli/history/lots.rs` and page Lots (`page/script/lots.js`).
 //!
 //! Four causes get no row: `not_calibrated`, a `history_lost` at the end of the run, `script` (`story/mod.rs`), and
 //! `hung` (`stop_signals.rs`), which is only logged.

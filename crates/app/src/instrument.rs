@@ -3,8 +3,10 @@
 use scpi::Failure;
 use texts::Message;
 
-/// Returns the message of a failure: family `instrument`, and its code. The argument `detail` repeats `said` for programs
-/// that read JSON.
+/// Returns the message of a failure: family `instrument`, and its code.
+///
+/// Argument `said` is what the instrument or the system reported, in English; only some failures have it. Programs that
+/// read JSON expect this text as `detail`, so the message holds it under both names.
 pub fn message(failure: &Failure) -> Message {
     let message = bus::instrument::message(failure);
     match message.args().get("said").map(str::to_owned) {

@@ -9,7 +9,7 @@ use std::fmt;
 /// Type, baud and format of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Config {
-    /// Field TT: range of an analog module, or type of another one.
+    /// Field TT: range of an analog module; type of any other module.
     pub type_code: TypeCode,
     /// Field CC: baud rate.
     pub baud: BaudCode,

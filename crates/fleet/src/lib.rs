@@ -10,7 +10,8 @@
 //! - [`Pusher`] sends in a thread of its own; the rig never waits for a database.
 //! - [`Reader`] answers the questions of a history over all rigs, or some.
 //! - [`overview`] asks what all rigs do and made, for a page that many screens share.
-//! - The schema has remarks, monthly partitions, a role that inserts and one that reads ([`set_up`]).
+//! - The schema has a comment (`COMMENT ON`) on its tables, monthly partitions, a role that inserts and one that reads
+//!   ([`set_up`]).
 //!
 //! The password comes from the environment or a password file and is never logged.
 

@@ -1,6 +1,8 @@
-//! The tables of a history file, made from those of the database: a statement gets each table that it names as a common
-//! table expression. So a question is written once, for the tables of the file; the database needs no further views,
-//! and a read-only replica answers too.
+//! Lets statements that were written for a history file run on the database: each table that a statement names is
+//! defined before it as a common table expression.
+//!
+//! So a question is written once, for the tables of the file. The database needs no further views, and a read-only
+//! replica answers too.
 
 /// Which rigs answer.
 #[derive(Debug, Clone, PartialEq, Eq)]

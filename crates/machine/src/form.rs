@@ -66,9 +66,9 @@ pub enum Form {
     Numbers(usize, Range),
     /// A table with these keys.
     Table(&'static [Key]),
-    /// A table of entries with free names (lower case, digits, underscore); all entries have this shape.
+    /// A table whose entry names are free (lower case, digits, underscore); all entries have this shape.
     Named(&'static Form),
-    /// A table of entries with free names, which must include these; all entries have this shape.
+    /// A table whose entry names are free, but these entries must be present; all entries have this shape.
     NamedWith(&'static [&'static str], &'static Form),
     /// A table with exactly these names; all entries have this shape.
     Each(&'static [&'static str], &'static Form),

@@ -145,7 +145,7 @@ pub(super) struct AuditQuery {
     /// Name at login; all people when absent.
     #[param(example = "li")]
     who: Option<String>,
-    /// Word of the order; all orders when absent.
+    /// Name of the order, as in `POST /api/orders`; all orders when absent.
     #[param(example = "start")]
     order: Option<String>,
 }

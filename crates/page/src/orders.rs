@@ -27,7 +27,7 @@ pub const WAITING: usize = 16;
 /// Body of the answer to an accepted order.
 #[derive(Debug, Serialize, ToSchema)]
 pub(super) struct Accepted {
-    /// Word of the order.
+    /// Name of the order, as in `POST /api/orders`.
     order: String,
     /// Remark about the outcome for the person who gave the order.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -81,8 +81,8 @@ impl Chart {
         all.filter(|it| it.is_finite())
     }
 
-    /// Returns the value at the right end of the axis: 2 % beyond the greatest value or mark, 10 % on a logarithmic
-    /// axis.
+    /// Returns the value at the right end of the axis. On a logarithmic axis it is 1.1 times the greatest value or mark.
+    /// On a linear one it lies beyond that by 2 % of the way from the left end.
     fn to(&self) -> f64 {
         let greatest = self.values().fold(self.from, f64::max);
         match greatest > self.from {

@@ -1,4 +1,4 @@
-//! Draws the values of generated parts from the distributions of the default world.
+//! Draws the measured values of made-up parts, with the distributions of the simulated rig's default lot.
 
 use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use machine::dut::made_up::{Looks, MadeUp, Scatter};

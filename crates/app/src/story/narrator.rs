@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use texts::{Lang, Message};
 use units::RigTime;
 
-/// Words of a line about a part.
+/// What the account of a story says about one part.
 #[derive(Debug)]
 struct Told {
     name: String,

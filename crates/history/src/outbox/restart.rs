@@ -1,5 +1,5 @@
-//! Fills the queue of a target anew: for a new target, for a target that has lost rows, and when this file takes over
-//! from another history of the same rig.
+//! Refills the queue of a target (a fleet database): when the target is new, when it has lost rows, or when this history
+//! replaces another history of the same rig.
 
 use super::{Outbox, read_target, uuid};
 use crate::error::{Doing, Result};

@@ -6,15 +6,15 @@ use super::world::{KINDS, gripper, moves, world};
 use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 use serde_json::json;
 
-/// Bar: the ratio of the largest to the smallest cost of a local move must stay below this.
+/// Bar: the cost of a local move at the largest size, divided by that at the smallest, must stay below this.
 const BAR: f64 = 2.0;
 /// Kinds of local moves.
 const LOCAL: [&str; 2] = ["jog5", "local300"];
 
-/// A cost (time, or memory) at every size.
+/// A cost, in time or memory, at every size.
 struct Cost {
     name: String,
-    /// Number of queries over which the mean is taken.
+    /// Number of queries that the mean includes.
     n: usize,
     /// Whether the bar applies.
     has_bar: bool,
@@ -23,6 +23,7 @@ struct Cost {
 }
 
 impl Cost {
+    /// Returns the cost at the largest size divided by that at the smallest.
     fn ratio(&self) -> f64 {
         self.at[SIZES.len() - 1] / self.at[0]
     }
@@ -97,7 +98,7 @@ fn costs(clock: f64) -> Vec<Cost> {
     table
 }
 
-/// Prints each cost at every size, and the ratio of the largest to the smallest.
+/// Prints each cost at every size, and the cost at the largest size divided by that at the smallest.
 pub fn print(clock: f64) {
     print!("{:<26}", "mean; n =");
     SIZES.iter().for_each(|size| print!(" {size:>9}"));
@@ -109,7 +110,8 @@ pub fn print(clock: f64) {
     }
 }
 
-/// Prints the ratio of the largest to the smallest cost as a figure, with the cost at every size.
+/// Prints for each cost a figure: the cost at the largest size divided by that at the smallest, with the cost at every
+/// size.
 pub fn print_figures(clock: f64) {
     for cost in costs(clock) {
         let mut figure = json!({

@@ -82,14 +82,16 @@ struct Bench {
 /// Times of building, copying and editing a model, ns.
 struct Edits {
     build: Spread,
-    /// Building the compound of the peer, in double and in single precision.
+    /// Building the compound of the peer in double precision.
     rebuild: Spread,
+    /// Building the compound of the peer in single precision.
     single_rebuild: Spread,
     copy: Spread,
     /// Inserting and removing an element.
     edit: Spread,
-    /// Inserting and removing a leaf of the peer's raw tree, in double and in single precision.
+    /// Inserting and removing a leaf of the peer's raw tree in double precision.
     double_edit: Spread,
+    /// Inserting and removing a leaf of the peer's raw tree in single precision.
     single_edit: Spread,
 }
 

@@ -118,7 +118,7 @@ pub struct Wiring {
     pub interlocks: Vec<StrokeNeeds>,
     /// How parts get to their test.
     pub handling: Handling,
-    /// Ranges of the supply, smallest first; empty without a source.
+    /// Ranges of the coil supply, smallest first; empty on a rig without a source in `[analog_out]`.
     pub supply_ranges: Vec<SupplyRange>,
     /// Range for which the gains hold; `None` for the gains of `config/rig.toml`, at factor 1.
     pub supply_range: Option<SupplyRange>,

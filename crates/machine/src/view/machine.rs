@@ -51,7 +51,7 @@ pub struct Machine {
 /// One order that a button sends.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Button {
-    /// Word of the order.
+    /// Name of the order, as in `POST /api/orders`.
     pub order: String,
     /// Motion, mode or alarm that the order names; empty without one.
     pub with: String,

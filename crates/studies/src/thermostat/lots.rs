@@ -15,7 +15,7 @@ const COVERAGE: Bar = Bar::Within(93.0, 98.0);
 /// Bar of the mean error over all seeds, K.
 const MEAN_K: f64 = 0.05;
 
-/// A kind of part with its bars, all for batches of 40.
+/// A kind of part with its bars. Those of errors and minutes hold for batches of 40.
 pub struct Bars {
     pub kind: Kind,
     rms_52_k: f64,
@@ -48,12 +48,14 @@ pub const BARS: [Bars; 2] = [
 ];
 /// Bar of the rms error of the differential after passes at 5 and 1 K/min, K.
 const DIFFERENTIAL_K: f64 = 0.32;
+
 /// Batches of one seed.
 pub struct Lot {
-    /// Passes at 5 and 2 K/min; the next field is a batch with one pass at 2 K/min that knows the lag.
+    /// Batch with two temperature passes, at 5 and then 2 K/min.
     pub two: Outcome,
+    /// Batch with one pass at 2 K/min, which uses the lag learned in [`Lot::two`].
     one: Outcome,
-    /// Passes at 5 and 1 K/min.
+    /// Batch with two passes, at 5 and then 1 K/min.
     slow: Outcome,
 }
 

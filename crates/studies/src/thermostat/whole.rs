@@ -128,8 +128,7 @@ fn covered(about: &str, lots: &[Ran], key: &str) -> Figure {
         .bar(Bar::AtLeast(COVERED))
 }
 
-/// Returns good parts that failed for another reason than their guard band, defective parts that passed, and writes to an
-/// EEPROM.
+/// Returns three counts: good parts that failed beyond their guard band, defective parts that passed, EEPROM writes.
 fn verdicts(about: &str, lots: &[Ran]) -> [Figure; 3] {
     let (mut good, mut wrong, mut defects, mut missed) = (0, 0, 0, 0);
     for lot in lots {

@@ -133,11 +133,11 @@ pub struct Overshoots {
     pub release: Overshoot,
 }
 
-/// Temperature of the parts, found on reference parts.
+/// What reference parts show about the temperature of parts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Temperature {
-    /// Difference between the temperature of a part and the mean of the reference parts, each relative to that of the
-    /// magazine track, kelvin.
+    /// How far the temperature of a part lies from the mean of the reference parts, both taken relative to the magazine
+    /// track, kelvin.
     pub part_k: Deviation,
     /// Certified over found coil resistance at the reference temperature. It contains the error of the thermometer, of
     /// the reference resistor and the mean heating of the coil.

@@ -45,7 +45,7 @@ pub struct Learned {
 }
 
 impl Learned {
-    /// Adds a part; ignores one without both voltages.
+    /// Adds a part, if both its voltages are known.
     pub fn add(&mut self, record: &TestRecord) {
         let volts = |of: Parameter| {
             record

@@ -25,9 +25,10 @@ fn range(stage: DcStage, dc: &DcPlan) -> (Parameter, &CurrentRange, Finding) {
     }
 }
 
-/// Returns the acts of a leakage: in both directions, unless a body diode conducts in the reversed one. The limit of the
-/// current is the end of the meter's range, so a part that conducts takes no more, and the range never overflows. Two
-/// readings follow each other: the first also waits for the charge of the output.
+/// Returns the acts that measure the leakage, in both directions unless a body diode conducts in reverse.
+///
+/// The current limit is the end of the meter's range: a part that conducts draws no more, and the range does not
+/// overflow. Each direction takes two readings; during the short first one the output charges.
 pub fn acts(
     state: &mut State,
     stage: DcStage,
@@ -60,7 +61,7 @@ const fn directions(dc: &DcPlan) -> usize {
     if dc.body_diode { 1 } else { 2 }
 }
 
-/// Returns the acts of the same with nothing in place of the output.
+/// Returns the acts that measure the leakage of the fixture without a part.
 pub fn open_acts(state: &mut State, dc: &DcPlan, points: &Points) -> Vec<Act> {
     let mut acts = board::change(points, state.position, Position::Isolated);
     state.position = Position::Isolated;
