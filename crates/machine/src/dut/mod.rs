@@ -69,7 +69,7 @@ pub enum Kind {
     EmRelay,
     /// One resistor in a body of relay size, which checks the fixture.
     Resistor,
-    /// Solid-state relay: LED, MOSFET output.
+    /// Solid-state relay: LED, MOSFET or triac output.
     Ssr,
     /// Temperature relay: bimetal switch.
     Thermostat,

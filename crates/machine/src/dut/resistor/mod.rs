@@ -4,16 +4,18 @@
 //! like any part, which checks feeder, probes and supply with one characteristic on one channel. Voltage and current
 //! have the makers' accuracies: the kind needs neither references nor reference parts.
 //!
-//! | question | file |
+//! | file | holds |
 //! |---|---|
-//! | what is measured, and where a part that fails goes | [`parameter`] |
-//! | what the part is, how it is measured | [`recipe`] |
-//! | which points of the rig it needs | [`points`] |
-//! | how accurate the figure is | [`accuracy`] |
-//! | what a test finds in addition to the figure | [`finding`] |
-//! | the keys of its recipe | [`keys`] |
-//! | the test | [`measure`] |
-//! | the process card | [`card`] |
+//! | `mod` | [`DEFINITION`]: name, keys, characteristics, stages, findings |
+//! | [`parameter`] | characteristics as data, bins: `KindCharacteristic` |
+//! | [`finding`] | findings without a value (such as "open"), each with its code, its bin and the limit that it proves exceeded |
+//! | [`keys`] | keys of `[part]`, `[limits]` and `[test]` with unit and range |
+//! | [`recipe`] | the recipe as types, and the check that the rig can carry it out: `KindRecipe` |
+//! | [`points`] | points that the test needs, looked up by name |
+//! | [`measure`] | [`Device`], which outlives a part, and [`Test`] of one part: `DeviceUnderTest`, `TestProcedure` |
+//! | [`accuracy`] | uncertainty of a result |
+//! | [`card`] | process card |
+//! | [`made_up`] | statistics of a lot, for made-up parts |
 
 pub mod accuracy;
 pub mod card;
