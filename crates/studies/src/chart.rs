@@ -28,7 +28,7 @@ const PLOT: f64 = 480.0;
 const NUMBER: f64 = 100.0;
 const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
-/// Ratio of the greatest to the least value above which short bars of a linear axis no longer differ to the eye.
+/// Ratio of the greatest to the least value. Above it, the eye no longer tells short bars on a linear axis apart.
 const WIDE_SPAN: f64 = 30.0;
 /// Height of one line of the numbers below the axis, px.
 const NUMBER_LINE: f64 = 15.0;
@@ -81,8 +81,8 @@ impl Chart {
         all.filter(|it| it.is_finite())
     }
 
-    /// Returns the value at the right end of the axis. On a logarithmic axis it is 1.1 times the greatest value or mark.
-    /// On a linear one it lies beyond that by 2 % of the way from the left end.
+    /// Returns the value at the right end of the axis. On a logarithmic axis it is 1.1 times the greatest value or
+    /// mark. On a linear one it lies beyond that by 2 % of the way from the left end.
     fn to(&self) -> f64 {
         let greatest = self.values().fold(self.from, f64::max);
         match greatest > self.from {

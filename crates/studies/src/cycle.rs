@@ -1,8 +1,8 @@
 //! Rig time of a test and of a cycle, and the pieces of each.
 //!
 //! A cycle lasts from the nest exit of one part to that of the next. The cycle minus the test is mechanics; the time of
-//! the test that no piece names is `rest`. Shares are means over the parts that have both times, so that the pieces add
-//! up to the mean cycle.
+//! the test that no piece names is `rest`. The time of each piece is the mean over the parts that have both times, so
+//! that the pieces add up to the mean cycle.
 
 use super::bins;
 use super::chart::Chart;
@@ -19,10 +19,10 @@ use quality::spread::median;
 
 /// Greatest permitted time of the longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// Greatest permitted time of the longest test of a good solid-state relay, seconds of rig time, for a DC and for an AC
-/// load. The time excludes repetitions and what occurs only at the start of a lot: references, and searches without an
-/// expected value.
+/// Greatest permitted time of the longest test of a good solid-state relay for a DC load, seconds of rig time. The time
+/// excludes repetitions and what occurs only at the start of a lot: references, and searches without an expected value.
 const DC_TEST_S: f64 = 1.0;
+/// As [`DC_TEST_S`], for a solid-state relay for an AC load.
 const AC_TEST_S: f64 = 1.5;
 /// Number of parts from which the overshoot model ([`machine::dut::em_relay::overshoot`]) starts the fine ramps close
 /// to the threshold. The model has six terms, and the reference parts lie far apart: after fewer parts its uncertainty
@@ -137,7 +137,7 @@ fn longest(name: impl Into<String>, bar_s: f64, times: &[f64]) -> Figure {
 }
 
 /// Compares the mean test time of good parts with its lower bound: the time of the same test steps on a bus without
-/// delay, which leaves conversion, settling and the contact events alone.
+/// delay, where only conversion, settling and the contact events take time.
 pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     let tests: Vec<(f64, f64)> = lots
         .iter()

@@ -86,7 +86,7 @@ fn readings(characteristic: impl Into<Characteristic> + Copy, lots: &[Lot]) -> V
 
 /// Estimates the distributions of process and measurement from `readings`. The process is normal; its variance is that
 /// of the values minus that of the measurement. The uncertainty of one measurement is the median over parts; the
-/// uncertainty after a confirmation measurement is the median of those clearly smaller.
+/// uncertainty after a confirmation measurement is the median of the uncertainties that are clearly smaller.
 fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
     let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
     let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();

@@ -1,13 +1,13 @@
 //! Kills a running lot at random instants (`kill -9`) and checks the rows that the history holds afterwards.
 //!
 //! Every round starts a lot in its own process, kills it with SIGKILL after a random time (before the first part, in
-//! the middle of a transaction, between beam and row), opens the same history and compares its rows with the parts that
-//! the process printed. The process prints a part when the light beam of its bin confirms it, and the gripper opens
-//! only after the row is durable. Every printed part must therefore have one row with the same verdict and bin, and
-//! curves if it failed; the numbers of the parts must have no gap; and the file must be undamaged. One round in three
-//! counts the time to the kill from the start of the process, the others from the first printed part; otherwise a busy
-//! machine would see every lot killed before its first part. All rounds share one history. After every tenth round a
-//! short lot must run to its end in it.
+//! the middle of a transaction, between the beam of a bin and the record of the landing), opens the same history and
+//! compares its rows with the parts that the process printed. The process prints a part when the light beam of its bin
+//! confirms it, and the gripper opens only after the row is durable. Every printed part must therefore have one row
+//! with the same verdict and bin, and curves if it failed; the numbers of the parts must have no gap; and the file must
+//! be undamaged. One round in three counts the time to the kill from the start of the process, the others from the
+//! first printed part; otherwise a busy machine would see every lot killed before its first part. All rounds share one
+//! history. After every tenth round a short lot must run to its end in it.
 
 use super::chart::Chart;
 use super::dice::Dice;

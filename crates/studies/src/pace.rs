@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Least parts per second of wall time.
 const PARTS_PER_SECOND: f64 = 150.0;
-/// Least solid-state relays per second of wall time; their records of the digitizer are long.
+/// Least solid-state relays per second of wall time: fewer, because each has long records of the digitizer.
 const WAVES_PER_SECOND: f64 = 30.0;
 /// Seed of every run.
 const SEED: u64 = 1;

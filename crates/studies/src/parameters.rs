@@ -1,12 +1,12 @@
 //! The studies with one figure per characteristic: accuracy and coverage. Below these figures the report shows in which
-//! bins the parts ended, the alarms, errors and EEPROM writes, and the parts worth a look.
+//! bins the parts ended, how many alarms, logged errors and EEPROM writes there were, and the parts worth a look.
 //!
 //! - Accuracy: the bar applies to the rms error over good parts, as a median over lots. Further columns have the worst
 //!   lot, the bias (median over lots of the mean error), the greatest error of any part and the pooled coverage.
 //! - Coverage: how often the stated uncertainty (k = 2) covers the truth, pooled over good parts of many lots. Every
 //!   lot has its own rig, so that the lots sample the errors that stay the same within a lot. Too high is as wrong as
-//!   too low: an uncertainty that always covers the truth is stated too large. A characteristic without any error, such as
-//!   a number of half periods of the mains, has no bar.
+//!   too low: an uncertainty that always covers the truth is stated too large. A characteristic without any error, such
+//!   as a number of half periods of the mains, has no bar.
 
 use super::bins;
 use super::chart::Chart;

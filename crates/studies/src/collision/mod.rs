@@ -1,7 +1,7 @@
 //! `relayrig study collision`: speed against error of every way to check a move.
 //!
-//! The study puts moves of five kinds to every method, in a scene of 1,000 bodies (`scene`), and knows the exact truth
-//! about each move (`world`). The methods:
+//! Every method checks the same moves of five kinds in a scene of 1,000 bodies (`scene`). The study knows the exact
+//! truth about each move (`world`). The methods:
 //! - the method of the paper (layer-based projection model of Peng and others, 2010), rebuilt (`paper`), at steps of
 //!   10, 1, 0.1 and 0.01 mm;
 //! - swept boxes: the swept query of the collision core over bounding boxes instead of the exact shapes; compared with

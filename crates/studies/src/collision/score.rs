@@ -6,7 +6,7 @@ use std::time::Instant;
 
 /// Number of passes over the moves. The fastest pass of a move counts, because other processes disturbed it least.
 const PASSES: usize = 3;
-/// Time of the first pass, seconds, from which a move runs in no further pass.
+/// A move whose first pass takes this time or longer, seconds, runs in no further pass.
 const SLOW_S: f64 = 1e-4;
 
 /// Function that returns the first contact as a fraction of the move; `None` for a clear move.

@@ -50,7 +50,8 @@ impl Medium {
 
 /// Range of the room temperature, C.
 const ROOM_C: [f64; 2] = [18.0, 28.0];
-/// Standard uncertainty of a calibrated chain, from which the study draws its bias, K.
+/// Standard uncertainty of a calibrated chain (sensor, wires, converter), K. The study draws the bias of each chain
+/// with this standard deviation.
 pub const CHAIN_K: f64 = 0.05;
 /// Standard deviation of delay and lag of the sensors, percent.
 const SENSOR_SPREAD_PCT: f64 = 30.0;

@@ -87,9 +87,11 @@ pub struct Plot {
     /// Words that the name of a figure must contain to be drawn.
     #[serde(default)]
     pub figures: Vec<String>,
-    /// Columns of the x axis. A name draws one point per figure, with x from this column and y the value. A prefix and
-    /// `*` draw one curve per figure: each column with this prefix is a point, with x in the place of the `*` and y the
-    /// column.
+    /// Column or columns of the x axis.
+    ///
+    /// With the name of a column, each figure is one point: x is that column, y the value. With a prefix and `*`, each
+    /// figure is a curve: every column with this prefix is a point, whose x stands in its name in the place of the `*`
+    /// and whose y is the number in the column.
     pub column: String,
     /// Title of the x axis.
     pub x: String,

@@ -20,7 +20,7 @@ const DAYS: i64 = 365;
 const ASKED: u64 = 60;
 const DAY_US: i64 = 86_400_000_000;
 
-/// Makes the figures: of the database, and of the questions.
+/// Makes the figures about the database and about the questions.
 pub(super) fn figures(
     server: &Trial,
     runtime: &Runtime,
@@ -98,7 +98,7 @@ fn filters(
     )
 }
 
-/// Times counts of the yield by rig and day of a month.
+/// Times questions for the yield of a month by rig and day.
 fn months(all: &Archive) -> anyhow::Result<Figure> {
     let now_us = jiff::Timestamp::now().as_microsecond();
     let day = [Shift {

@@ -1,6 +1,7 @@
 //! Speed of the database behind many rigs, on a PostgreSQL server of its own on this computer.
 //!
-//! - `push` sends the history of a rig, and compares with the client of the server that copies the same rows.
+//! - `push` times how the program sends the history of a rig, and compares that with `psql`, the client of the server,
+//!   which copies the same rows.
 //! - `ask` fills the database with made-up rigs and times questions of the command line.
 //!
 //! All times are wall times; server and program share the processors.

@@ -19,7 +19,7 @@ struct Blocks {
     wrong: u64,
     /// Cases that the true bodies show and boxes do not.
     missed: u64,
-    /// Part of `wrong` along z, the one axis on which the scene leaves an element free.
+    /// Those of `wrong` in which the element leaves along z, the one axis on which the scene leaves an element free.
     along: u64,
 }
 

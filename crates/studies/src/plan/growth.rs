@@ -84,8 +84,8 @@ fn shortest_ms(work: impl Fn() -> anyhow::Result<usize>) -> anyhow::Result<f64> 
     Ok(least_ms)
 }
 
-/// Removes one element from the dynamic table; returns the number of rows that the removal touches, and of rows that
-/// name the element.
+/// Removes one element from the dynamic table. Returns the number of rows that the removal touches, and the number of
+/// rows that name the element.
 fn removal(table: &Interference) -> (usize, usize) {
     let way = |number: usize, direction: Direction| Way {
         legs: vec![Leg {

@@ -18,21 +18,22 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// Recipe of the lots: the test of its parts uses line and loop.
+/// Recipe of the lots: its test uses the line (mains) and the loop (load current), each with a contactor.
 const RECIPE: &str = "ssr-ac-240v-5a-zc";
-/// Parts of each lot: the first one comes with the references of the fixture, the second one without.
+/// Parts of each lot. The rig measures the references of the fixture before it tests the first part, and not again
+/// before the second.
 const PARTS: u64 = 2;
-/// Time before the first contact closes and after the last one opens, in which instants are tried too, microseconds.
+/// The study also kills within this time before the first contact closes and after the last one opens, microseconds.
 const MARGIN_US: u64 = 50_000;
-/// Longest time from a coil without current to open main contacts, microseconds.
+/// Longest time from the end of the current in a contactor's coil to open main contacts, microseconds.
 const RELEASE_US: u64 = 10_000;
-/// Time beyond the watchdog after which a contactor counts as closed for good, microseconds.
+/// A contactor still closed at this time after the watchdog has expired counts as closed for good, microseconds.
 const AFTER_US: u64 = 500_000;
 
 /// Result of the kills.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Kills {
-    /// Time from the kill until all main contacts were open, microseconds, of each kill that found one closed.
+    /// For each kill that found a main contact closed: time until all were open, microseconds.
     pub open_us: Vec<u64>,
     /// Kills after which main contacts stayed closed.
     pub closed: u64,
@@ -92,7 +93,8 @@ impl Bench {
         (self.plant.wiring.bus.host_watchdog_ms * 1e3) as u64
     }
 
-    /// Lives once on a new rig, until a kill if there is one, and lets the rig go on until its watchdogs have expired.
+    /// Runs one life on a new rig, until its kill if it has one; then lets the rig go on until its watchdogs have
+    /// expired.
     fn live(&self, name: &str, killed_after_us: Option<u64>) -> anyhow::Result<Course> {
         let rig = rigsim::build(&Options {
             files: app::simulated::files(&self.folder),
@@ -134,7 +136,8 @@ impl Bench {
 /// Kills `count` lives at equal distances over the time in which a contactor is closed.
 ///
 /// # Errors
-/// Fails when the configuration does not load, a runtime cannot be built, or no contactor closes in a life without kill.
+/// Fails when the configuration does not load, a runtime cannot be built, or no contactor closes in a life without
+/// kill.
 pub fn kills(count: u64) -> anyhow::Result<Kills> {
     let bench = Bench::new()?;
     let calm = bench.live("calm", None)?;

@@ -8,16 +8,19 @@ use machine::dut::ssr::wave::split::{Admittance, phasor};
 use machine::dut::ssr::wave::{Channel, drop_line, mains::Mains};
 use std::f64::consts::{SQRT_2, TAU};
 
-/// Nominal mains, rms V and Hz.
+/// Nominal voltage of the mains, V rms.
 const MAINS_V: f64 = 230.0;
+/// Nominal frequency of the mains, Hz.
 const HZ: f64 = 50.0;
-/// Third and fifth harmonic over the fundamental.
+/// Amplitudes of the third and fifth harmonic, as shares of the fundamental.
 const HARMONICS: (f64, f64) = (0.017, 0.01);
-/// Pulses of a train; the period meets each half cycle at another phase.
+/// Pulses of a train. Their period makes each pulse begin at another phase of a half cycle.
 const PULSES: u32 = 6;
-/// Drop of the conducting output, V, and the greatest one that counts as conducting.
+/// Drop of the conducting output, V.
 const DROP_V: f64 = 1.1;
+/// Greatest voltage across an output that counts as conducting, V.
 const ON_V: f64 = 3.2;
+/// Voltage at which the input of the channel for the drop clamps, V.
 const CLAMP_V: f64 = 10.0;
 /// Time to read one sample of two channels, s.
 const READ_S: f64 = 1.6e-6;
@@ -52,8 +55,8 @@ impl Line {
         (self.at(at_s + NEAR_S) - self.at(at_s - NEAR_S)) / (2.0 * NEAR_S)
     }
 
-    /// Returns the first time from `from_s` on at which the voltage is nearer to 0 than `volts`; zeros of the harmonics
-    /// are those of the fundamental.
+    /// Returns the first time from `from_s` on at which the voltage is within `volts` of 0. The harmonics pass through
+    /// 0 together with the fundamental.
     fn below(&self, from_s: f64, volts: f64) -> f64 {
         if self.at(from_s).abs() <= volts {
             return from_s;
@@ -86,7 +89,8 @@ pub fn zero_crossings(parts: u64) -> Vec<Figure> {
         .collect()
 }
 
-/// Errors of single turn-ons on the falling flank, over the train of the controller.
+/// Returns the errors of the voltage at turn-on, one for each pulse that turns on while the mains fall towards 0. The
+/// pulses form the train that the controller uses.
 fn zero_crossing(parts: u64, rate: f64, bits: i32) -> Figure {
     let mut dice = Dice::new(1);
     let scope = Scope {
@@ -163,7 +167,8 @@ fn zero_crossing(parts: u64, rate: f64, bits: i32) -> Figure {
     }
 }
 
-/// Returns the rows of the resistive part of a leakage: by the split, and from the rms value and the nominal snubber.
+/// Returns the rows of the resistive part of a leakage by two methods: the split of the record into both parts, and the
+/// rms value without the current of the nominal snubber.
 pub fn leakages(parts: u64) -> Vec<Figure> {
     let mut rows = Vec::new();
     for periods in [1.0, 3.0, 10.0] {
@@ -179,8 +184,8 @@ pub fn leakages(parts: u64) -> Vec<Figure> {
     rows
 }
 
-/// Returns the errors of both methods, microamperes, for 5 to 100 uA beside the 1.45 mA of a snubber of 20 nF, which
-/// scatters by 3.5 %.
+/// Returns the errors of both methods, microamperes. The resistive parts are 5 to 100 uA, beside the 1.45 mA of a
+/// snubber of 20 nF whose capacitance scatters by 3.5 %.
 fn leakage(parts: u64, periods: f64) -> (Vec<f64>, Vec<f64>) {
     const SNUBBER_F: f64 = 20e-9;
     let mut dice = Dice::new(1);
@@ -221,7 +226,8 @@ fn leakage(parts: u64, periods: f64) -> (Vec<f64>, Vec<f64>) {
     (split, whole)
 }
 
-/// Returns the rows of the drop at the peak of the current, from the straight line through samples of one polarity.
+/// Returns the rows of the drop at the peak of the current, read from a straight line through the samples of one
+/// polarity.
 pub fn drops(parts: u64) -> Vec<Figure> {
     [1, 2, 10].map(|periods| drop(parts, periods)).to_vec()
 }

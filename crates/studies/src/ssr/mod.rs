@@ -1,9 +1,10 @@
-//! Study `ssr`: seconds against error of the methods for solid-state relays, and kills of a controller with the line on.
+//! Study `ssr`: seconds against error of the methods for solid-state relays, and kills of a controller with the line
+//! on.
 //!
-//! The study joins the arithmetic of the controller with a model of the signals, so that only the error of the method
-//! remains: sampling, resolution and noise of the digitizer, the delay of the part near its threshold, the errors of the
-//! source where a row says so. `seconds` is rig time of the method: dwell and record, and for searches the commands of
-//! a step.
+//! The study applies the arithmetic of the controller to a model of the signals, so that only the error of the method
+//! remains: sampling, resolution and noise of the digitizer, the delay of the part near its threshold and, where a row
+//! says so, the errors of the source. `seconds` is the rig time of the method: dwell and record, and for searches the
+//! commands of each step.
 
 mod kill;
 mod mains;
@@ -16,7 +17,7 @@ use super::dice::Dice;
 use super::figure::{Figure, mean, rms};
 use super::output::Report;
 
-/// Parts of each row without `--seeds`.
+/// Default number of parts behind each row; `--seeds` gives another.
 pub const PARTS: u64 = 400;
 
 /// Number of kills of the controller.
@@ -86,11 +87,11 @@ mod tests {
         for bits in [8, 12] {
             let rates =
                 [20, 50, 100, 250, 1000].map(|rate| of(&format!(", {rate} kS/s, {bits} bits")));
-            // Where the noise dominates, more samples give no more.
+            // Where noise dominates, more samples reduce the error no further.
             let is_finer = rates[..4].is_sorted_by(|one, other| one > other);
             assert!(is_finer && rates[4] < rates[2], "{bits} bits: {rates:?}");
         }
-        // The half of a step over the root of three.
+        // Half of a sampling interval, divided by the root of three.
         assert!((of("100 kS/s, 12 bits") - 0.3).abs() < 0.1);
     }
 

@@ -1,4 +1,4 @@
-//! Turn-on voltage of a DC part by ramp, search and conformity.
+//! Turn-on voltage of a DC part by ramp, by search, and by a single step that tests conformity.
 
 use super::{Dice, normal, row, uniform};
 use crate::figure::{Bar, Figure, percent};
@@ -6,22 +6,25 @@ use machine::dut::ssr::search::{Direction, Expected, Search};
 
 /// Knee of the LED, V: above it the light grows in proportion to the voltage.
 const KNEE_V: f64 = 1.1;
-/// Limits between which the search begins, V, and the highest voltage of a ramp.
+/// Lowest and highest voltage of searches and ramps, V.
 const LIMITS_V: (f64, f64) = (1.0, 3.5);
-/// Commands and readings of a step with and without a return to 0 V, s.
+/// Time of the commands and readings of a search step that returns to 0 V first, s.
 const STEP_S: f64 = 0.018;
+/// The same for a step without a return to 0 V, s.
 const BRIEF_S: f64 = 0.014;
-/// Commands and transfer of a recorded ramp, s; the shortest time of one of its levels, s; length of the record over that
-/// of the ramp.
+/// Time of the commands and the transfer of a recorded ramp, s.
 const SWEEP_S: f64 = 0.09;
+/// Shortest time of a level of a recorded ramp, s.
 const LEVEL_S: f64 = 0.3e-3;
+/// Length of the record, divided by that of the ramp.
 const RECORD: f64 = 1.5;
 /// Longest time constant that a recipe promises, s.
 const LONGEST_S: f64 = 0.5e-3;
-/// Steps of the model of a ramp, s.
+/// Time step of the model of a ramp, s.
 const MODEL_S: f64 = 5e-6;
-/// Errors of the source of a conformity test, V: half width, and guard band.
+/// Error of the source in a conformity test, V, half width.
 const SOURCE_V: f64 = 2.7e-3;
+/// Guard band of a conformity test, V.
 const GUARD_V: f64 = 3.6e-3;
 
 /// A part: its turn-on voltage, V, and the time constant of its output, s.
@@ -38,12 +41,12 @@ impl Part {
         }
     }
 
-    /// Returns the light at a voltage over its threshold.
+    /// Returns the light of the LED at a voltage, divided by the light at which the output conducts.
     fn light(&self, volts: f64) -> f64 {
         (volts - KNEE_V).max(0.0) / (self.on_v - KNEE_V)
     }
 
-    /// Returns true when the output conducts at the end of a dwell, s, that begins dark.
+    /// Returns true when the output conducts at the end of a dwell of `dwell_s`, before which the LED was dark.
     fn conducts(&self, volts: f64, dwell_s: f64) -> bool {
         let light = self.light(volts);
         light > 1.0 && -self.tau_s * (1.0 - 1.0 / light).ln() <= dwell_s
@@ -84,8 +87,9 @@ fn ramp(parts: u64, rate: f64) -> Figure {
     )
 }
 
-/// Returns the error of the controller's ramp at a resolution, mV: four levels within it, and half of the greatest lag
-/// taken from the level at which the output conducts.
+/// Returns the error of the controller's ramp at a resolution of `width_mv`, with its seconds. The ramp has four levels
+/// within the resolution. Its value is the level at which the output conducts, less half a step and half of the
+/// greatest lag.
 fn swept(parts: u64, width_mv: f64) -> Figure {
     let mut dice = Dice::new(1);
     let (mut errors, mut seconds) = (Vec::new(), 0.0);
@@ -113,8 +117,8 @@ fn swept(parts: u64, width_mv: f64) -> Figure {
     )
 }
 
-/// Returns the error of the controller's search down to a width, mV, with or without the expectation from earlier
-/// parts.
+/// Returns the error of the controller's search, which ends when its interval is `width_mv` wide; with `is_expected`
+/// the search starts from the thresholds of earlier parts.
 fn bisect(parts: u64, width_mv: f64, is_expected: bool) -> Figure {
     let mut dice = Dice::new(1);
     let (mut errors, mut seconds) = (Vec::new(), 0.0);
@@ -150,8 +154,8 @@ fn bisect(parts: u64, width_mv: f64, is_expected: bool) -> Figure {
     }
 }
 
-/// Returns the share of the parts beyond the limit that one step, a guard band below the limit, accepts. The thresholds
-/// lie within 20 mV of the limit.
+/// Returns which share of the parts beyond the limit a conformity test accepts, percent. The test is one step to a
+/// guard band below the limit. The thresholds lie within 20 mV of the limit.
 fn conformity(parts: u64) -> Figure {
     let mut dice = Dice::new(1);
     let (mut beyond, mut accepted) = (0, 0);

@@ -7,12 +7,15 @@ use machine::dut::ssr::edges::edges as found;
 
 /// Time to read one sample of two channels, s.
 const READ_S: f64 = 1.6e-6;
-/// Lengths of the control pulse and of the record, and begin of the record relative to the pulse, s.
+/// Length of the control pulse, s.
 const PULSE_S: f64 = 2e-3;
+/// Length of the record, s.
 const RECORD_S: f64 = 4.4e-3;
+/// Begin of the record, relative to the nominal begin of the pulse, s.
 const BEGINS_S: f64 = -0.44e-3;
-/// Voltages of control and source.
+/// Voltage of the control pulse, V.
 const CONTROL_V: f64 = 5.0;
+/// Voltage of the source at the output, V.
 const SOURCE_V: f64 = 8.0;
 
 /// Returns the rows of several sampling intervals.

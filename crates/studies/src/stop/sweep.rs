@@ -8,8 +8,9 @@ const PARTS_BETWEEN: u64 = 5;
 /// Time after a nest exit, seconds, when a test is half done: jaws closed, probes up, z down, the next part in the
 /// pocket, so that homing has long strokes.
 const MID_TEST_S: f64 = 1.0;
-/// Orders of the operator after a stop: clear and reset; [`START`] follows.
+/// Orders of the operator after a stop: clear and reset.
 const CLEAR: &str = "after state Aborted +4 order clear\nafter state Stopped order reset\n";
+/// Order of the operator after [`CLEAR`]: start.
 const START: &str = "after state Idle order start\n";
 
 /// Interval over which the stops are spread.

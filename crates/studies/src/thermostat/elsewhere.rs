@@ -1,4 +1,4 @@
-//! Independence of rate and controller, and other worlds.
+//! Shows that results do not depend on rate and controller, and that the uncertainty covers the truth in other worlds.
 
 use super::rack::Batch;
 use super::rig::{Outcome, Rig};
@@ -9,11 +9,12 @@ use crate::figure::{Bar, Figure, mean};
 use crate::pool::{self, LOTS_AT_ONCE};
 use machine::dut::thermostat::recipe::Control;
 
-/// Bar of the difference of mean results between two rates, and between two controllers, K.
+/// Bar of the difference between the mean results at two rates, K.
 const RATE_K: f64 = 0.1;
+/// Bar of the difference between the mean results with two controllers, K.
 const CONTROLLER_K: f64 = 0.05;
 
-/// Compares the results of the same parts between rates, and between controllers.
+/// Compares the results of the same parts at different rates, and with different controllers.
 ///
 /// # Errors
 /// Fails when a chamber does not respond, or the machine ends a batch early.
@@ -62,7 +63,7 @@ pub fn independence(kind: Kind, scope: &Scope) -> anyhow::Result<Vec<Figure>> {
     Ok(names.into_iter().enumerate().flat_map(figure).collect())
 }
 
-/// Runs two passes and one in other worlds.
+/// Runs a batch of two passes and a batch of one pass in each of the other worlds.
 ///
 /// # Errors
 /// Fails as [`independence`] does.
@@ -89,7 +90,8 @@ pub fn worlds(kind: Kind, scope: &Scope) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Returns the least coverage of the three quantities in another world, with the coverage of each, error and minutes.
+/// Returns the least coverage of the three quantities in another world. Further columns have the coverage of each
+/// quantity, the error and the minutes.
 fn elsewhere(name: String, outcomes: &[&Outcome]) -> Figure {
     let of = |quantity| misses(outcomes.iter().copied(), quantity);
     let [operate, reset, differential] = Quantity::ALL.map(|it| coverage_pct(&of(it)));

@@ -1,7 +1,8 @@
 //! Every fault of the chamber at random instants: how long the heater stays on, and what becomes of the parts.
 //!
 //! The command of the heater is on while its analog output carries a voltage and the main contactor is closed. A fault
-//! counts only when the command was on at its instant or came on later; parts that were judged before do not count.
+//! counts only when the command was on at the instant of the fault or came on later. Parts that were judged before the
+//! fault do not count.
 
 use super::program::{Lot, Ran, run};
 use crate::dice::Dice;
@@ -11,16 +12,19 @@ use crate::storm::life::{EPOCH_US, End};
 use app::exit::Exit;
 use rigsim::journal::Entry;
 
-/// Recipe and number of parts.
+/// Recipe of the lots.
 const RECIPE: &str = "thermostat-ksd9700";
+/// Number of parts of a lot.
 const PARTS: u64 = 6;
 /// Instants between which a fault strikes, s: from the first heat of the identification to the last descent.
 const INSTANTS_S: [u64; 2] = [420, 3_000];
-/// Module and channel of the heater; module and bit of the contactor.
+/// Module and channel of the analog output that commands the heater.
 const HEATER: (&str, u8) = ("power_ao", 0);
+/// Module and bit of the output that closes the main contactor.
 const CONTACTOR: (&str, u16) = ("relay_do", 1);
-/// Longest time of the heater after a fault that a sensor or the chain shows, and after one that only temperatures show, s.
+/// Longest time for which the heater may stay on after a fault that a sensor or the safety chain shows, s.
 const SHOWN_S: f64 = 2.0;
+/// The same after a fault that only the temperatures show, s.
 const HIDDEN_S: f64 = 60.0;
 
 /// What must follow a fault.
@@ -28,7 +32,7 @@ const HIDDEN_S: f64 = 60.0;
 enum Must {
     /// The heater is off within this time, s, and no part is judged.
     Stop(f64),
-    /// The heater is off in the end, or results stay right: the controller makes up for the fault.
+    /// Either the heater ends off, or the results stay right because the controller makes up for the fault.
     StopOrStayRight,
 }
 
@@ -68,7 +72,8 @@ struct Struck {
 }
 
 impl Struck {
-    /// Returns the time after the fault at which the command of the heater was on last, s; `None` when it was never on.
+    /// Returns the time from the fault to the last instant at which the command of the heater was on, s; `None` when it
+    /// was never on after the fault.
     fn heats_s(&self) -> Option<f64> {
         let (mut level, mut closed, mut last_us) = (false, false, None);
         let at_us = self.at_s * 1_000_000;
@@ -106,7 +111,8 @@ impl Struck {
         self.ran.end != End::Exit(Exit::Done)
     }
 
-    /// Counts parts judged after the fault: all, those with a verdict other than void, good ones that failed beyond U.
+    /// Returns three counts of parts judged after the fault: all of them, those with another verdict than void, good
+    /// parts that failed beyond their guard band.
     fn judged(&self) -> [u64; 3] {
         let at_us = EPOCH_US + (self.at_s * 1_000_000) as i64;
         let after = self.ran.parts.iter().filter(|it| it.time.0 > at_us);
@@ -167,7 +173,7 @@ fn lot(fault: &str, seed: u64, at_s: u64) -> Lot {
     }
 }
 
-/// Returns the figures of one fault: time of the heater, and parts with a wrong verdict.
+/// Returns the figures of one fault: how long the heater stays on, and how many parts have a wrong verdict.
 fn of_fault(name: &str, must: Must, all: &[&Struck]) -> [Figure; 2] {
     let counts = all.iter().map(|it| it.judged());
     let [parts, judged, failed] =
@@ -183,7 +189,8 @@ fn of_fault(name: &str, must: Must, all: &[&Struck]) -> [Figure; 2] {
     }
 }
 
-/// Returns the longest time of the heater after a fault, with the number of lots that an alarm ended, and the lot behind it.
+/// Returns the longest time for which the heater stays on after a fault. Further columns have the number of lots
+/// that an alarm ended, and seed and instant of the lot with the longest time.
 fn heated(name: &str, all: &[&Struck]) -> Figure {
     let heats = all.iter().filter_map(|it| Some((it.heats_s()?, *it)));
     let heats: Vec<(f64, &Struck)> = heats.collect();

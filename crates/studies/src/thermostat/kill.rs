@@ -1,7 +1,8 @@
-//! Kills the controller of a batch at random instants, in virtual time, on one rig that keeps its heat from life to life.
+//! Kills the controller of a batch at random instants, in virtual time, on one rig that keeps its heat from life to
+//! life.
 //!
-//! After each kill the host watchdogs must make every output safe in time. The next start finds the chamber as it is: while
-//! the rack is hot it must neither unlock the door nor close the contactor of the heater.
+//! After each kill the host watchdogs must make every output safe in time. The next start finds the chamber as it is:
+//! while the rack is hot it must neither unlock the door nor close the contactor of the heater.
 
 use crate::dice::Dice;
 use crate::figure::Figure;
@@ -15,19 +16,23 @@ use std::sync::mpsc::Receiver;
 use tempfile::TempDir;
 
 const RECIPE: &str = "thermostat-ksd9700";
-/// Module of contactor, fan and lock, and their bits.
+/// Module that drives contactor, fan and lock.
 const MODULE: &str = "relay_do";
+/// Bit of the heater's contactor.
 const CONTACTOR: u16 = 1;
+/// Bit of the fan.
 const FAN: u16 = 1 << 1;
+/// Bit that unlocks the door.
 const LOCK_RELEASE: u16 = 1 << 2;
-/// Modules with a host watchdog.
+/// Number of modules with a host watchdog.
 const WATCHED: usize = 3;
-/// Request for the temperature of the rack, with its checksum, and the full scale of the reply, C.
+/// Request for the temperature of the rack, with its checksum.
 const RACK: &[u8] = b"#212B8";
+/// Full scale of the reply to [`RACK`], C.
 const FULL_C: f64 = 200.0;
-/// Instants of the kills after the start of a life, s: loading, identification and passes.
+/// Earliest and latest kill after the start of a life, s: the range covers loading, identification and passes.
 const INSTANTS_S: [u64; 2] = [400, 3000];
-/// Life of the next start, in which nothing may heat or unlock while the rack is hot, s.
+/// Time for which the study watches the next start, s: nothing may heat or unlock while the rack is hot.
 const LOOK_S: u64 = 30;
 const SECOND_US: u64 = 1_000_000;
 
@@ -40,7 +45,7 @@ pub struct Kills {
     pub unsafe_after: u64,
     /// Number of starts on a hot rack.
     pub hot: u64,
-    /// Number of starts that unlocked a hot rack, closed its contactor or did not cool it.
+    /// Number of starts on a hot rack that unlocked the door, closed the contactor or did not cool.
     pub wrong_starts: u64,
     /// Causes of the lives that ended by themselves.
     pub ended: Vec<String>,
@@ -53,8 +58,8 @@ struct Watch {
 }
 
 impl Watch {
-    /// Takes the entries since the last call; returns every state of the outputs in them, the present one first, and the
-    /// expired watchdogs.
+    /// Takes the entries of the journal since the last call. Returns the states of the outputs, first the one before
+    /// these entries, and the watchdogs that expired.
     fn entries(&mut self) -> (Vec<u16>, Vec<(u64, f64)>) {
         let (mut states, mut expired) = (vec![self.bits], Vec::new());
         while let Ok(entry) = self.journal.try_recv() {
@@ -91,7 +96,7 @@ fn rack_c(rig: &SharedRig) -> anyhow::Result<f64> {
     Ok(whole as f64 / 32767.0 * FULL_C)
 }
 
-/// Kills `count` lives.
+/// Kills the controller `count` times, and starts it again after each kill.
 ///
 /// # Errors
 /// Fails when the configuration does not load, or a runtime cannot be built.

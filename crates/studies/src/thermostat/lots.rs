@@ -1,4 +1,4 @@
-//! Batches of a lot in the default world: errors, coverage, minutes and parts per hour, for two passes and for one.
+//! Batches of a lot in the default world, of two passes and of one: errors, coverage, minutes and parts per hour.
 
 use super::batch;
 use super::rig::{Outcome, Rig};
@@ -8,9 +8,9 @@ use super::{FEW, Scope};
 use crate::figure::{Bar, Figure, mean};
 use crate::pool::{self, LOTS_AT_ONCE};
 
-/// Numbers of sockets, each with the minutes that a person needs to load them.
+/// Numbers of sockets, each with the minutes that a person needs to load that many.
 const SIZES: [(usize, f64); 3] = [(10, 2.0), (40, 4.0), (120, 8.0)];
-/// Coverage of the stated uncertainty in the default world, and its least in other worlds, percent.
+/// Bar of the coverage of the stated uncertainty in the default world, percent.
 const COVERAGE: Bar = Bar::Within(93.0, 98.0);
 /// Bar of the mean error over all seeds, K.
 const MEAN_K: f64 = 0.05;
@@ -21,7 +21,7 @@ pub struct Bars {
     rms_52_k: f64,
     rms_51_k: f64,
     rms_one_k: f64,
-    /// Longest batch of two passes and of one, min; `None` for the slow kind, which has no bar.
+    /// Greatest permitted time of a batch of two passes and of one, min; `None` for the slow kind, which has no bar.
     minutes: Option<[f64; 2]>,
     /// Least parts per hour by number of sockets, for two passes and for one; 0 for no bar.
     hourly: [[f64; 2]; 3],

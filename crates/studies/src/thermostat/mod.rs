@@ -10,10 +10,11 @@
 //! | `faults` | time until the heater is off, verdicts | the program on the simulated rig |
 //! | `kills` | outputs after a kill, the next start | the program on the simulated rig |
 //!
-//! The first three have no line and no module: each seed draws a chamber, its sensors, a lot and its sockets. The first
-//! batch of a lot measures the lag in two passes, the next one uses it in a single pass. Chain and map are calibrated. A
-//! batch begins at 45 C, right after the one before, with parts at room temperature, and ends below 54 C. Loading counts
-//! for parts per hour only. The program runs in virtual time.
+//! The first three sections have no line and no module: each seed draws a chamber, its sensors, a lot and its sockets.
+//! The first batch of a lot measures the lag in two passes; the next one uses this lag in a single pass. The measuring
+//! chain and the map of the sockets are calibrated. A batch begins right after the one before, with the air at 45 C and
+//! the parts at room temperature, and ends below 54 C. The time of loading counts for parts per hour only. The program
+//! runs in virtual time.
 
 mod elsewhere;
 mod faults;
@@ -38,7 +39,7 @@ use lots::BARS;
 use machine::dut::thermostat::recipe::Control;
 use rack::Batch;
 
-/// Number of seeds in other worlds, and with other numbers of sockets.
+/// Number of seeds for other worlds, and for other numbers of sockets.
 const FEW: u64 = 10;
 /// Kills of the controller of a batch.
 const KILLS: u64 = 50;
@@ -69,7 +70,8 @@ pub enum Section {
 /// What the study is to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Scope {
-    /// Number of lots of each kind; other sections run a share of their usual number when it is below the usual 20.
+    /// Number of lots of each kind in section `accuracy`. Below the usual 20, every other section reduces its runs in
+    /// the same ratio.
     pub seeds: u64,
     /// Number of sockets.
     pub sockets: usize,
@@ -82,7 +84,7 @@ impl Scope {
         self.only.is_none_or(|only| only == section)
     }
 
-    /// Returns a usual number of runs, reduced when the number of seeds is.
+    /// Returns a number of runs, reduced in the ratio of the seeds to their usual number; at least 1.
     fn of(&self, usual: u64) -> u64 {
         const SEEDS: u64 = 20;
         (usual * self.seeds.min(SEEDS)).div_ceil(SEEDS).max(1)
@@ -132,7 +134,7 @@ pub fn study(scope: &Scope) -> anyhow::Result<(Report, String)> {
     Ok((Report::new("thermostat", about, groups, chart), plot.svg()))
 }
 
-/// Runs the sections that have no kind of part.
+/// Runs the sections that do not run once for each kind of part.
 fn others(scope: &Scope) -> anyhow::Result<Vec<Vec<Figure>>> {
     let mut groups = Vec::new();
     if scope.has(Section::Control) {
@@ -150,8 +152,8 @@ fn others(scope: &Scope) -> anyhow::Result<Vec<Vec<Figure>>> {
     Ok(groups)
 }
 
-/// Returns a batch with the usual controller and these rates, K/min: of the first pass of a batch that measures the lag, and
-/// of the other passes.
+/// Returns a batch with the usual controller. The rates, K/min, are that of the first pass of a batch that measures the
+/// lag, and that of every other pass.
 fn batch(number: u64, sockets: usize, rates: [f64; 2]) -> Batch {
     Batch {
         number,

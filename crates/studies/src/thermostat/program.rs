@@ -18,7 +18,7 @@ use tempfile::TempDir;
 const LONGEST_S: u64 = 6 * 3600;
 const SECOND_US: u64 = 1_000_000;
 
-/// Replaces a text in a file of the configuration, which must hold it.
+/// A change of the configuration: another text in place of one that a file must contain.
 #[derive(Debug, Clone)]
 pub struct Change {
     /// Name of the file in the folder of the rig.
@@ -47,13 +47,13 @@ pub struct Lot {
 /// A lot that has run.
 #[derive(Debug)]
 pub struct Ran {
-    /// How the program ended; [`End::Killed`] when it did not end in time.
+    /// How the program ended; [`End::Killed`] when the study killed it because it did not end in time.
     pub end: End,
     /// Rows of the parts.
     pub parts: Vec<Part>,
     /// Truth about the parts.
     pub truth: Vec<Value>,
-    /// Outputs over time.
+    /// Changes of outputs, in order of time.
     pub journal: Vec<Entry>,
     /// Writes to the EEPROM of any module during the lot.
     pub eeprom_writes: u64,

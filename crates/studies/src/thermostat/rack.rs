@@ -14,8 +14,9 @@ const OPERATE: [f64; 2] = [85.0, 1.5];
 const DIFFERENTIAL: [f64; 2] = [20.0, 2.0];
 /// Spread of the lags within a lot, one standard deviation as a share.
 const LAG_SPREAD: f64 = 0.15;
-/// Offset of a socket that the map leaves, one standard deviation, K, at 75 K above the room.
+/// Error of a socket's temperature that the map of the sockets leaves, one standard deviation, K, at [`MAP_EXCESS_K`].
 pub const MAP_RESIDUAL_K: f64 = 0.10;
+/// Temperature above that of the room at which [`MAP_RESIDUAL_K`] holds, K.
 pub const MAP_EXCESS_K: f64 = 75.0;
 /// Delay of the air from the fan to the sockets, s.
 const AIR_DELAY_S: f64 = 1.0;
@@ -37,7 +38,7 @@ struct Part {
     next_c: f64,
     /// True while the contact is operated.
     operated: bool,
-    /// Switchings, as the polls have seen them.
+    /// Switchings of the contact, as the polls have seen them.
     seen: Switching,
 }
 
@@ -54,8 +55,8 @@ pub struct Rack {
 }
 
 impl Rack {
-    /// Fills the rack with a batch of a lot: a kind in a world, and the seed of rig and lot. Parts and air start at a
-    /// temperature each, C.
+    /// Fills the rack with a batch of a lot: a kind in a world, and the seed of rig and lot. The parts start at one
+    /// temperature, the air at another, C.
     pub fn new(
         (kind, world, seed): (Kind, &World, u64),
         batch: &Batch,
@@ -110,12 +111,12 @@ impl Rack {
         }
     }
 
-    /// Yields the true operate and reset temperature of each part, C.
+    /// Returns the true operate and reset temperature of each part, C.
     pub fn truths(&self) -> impl Iterator<Item = [f64; 2]> {
         self.parts.iter().map(|it| [it.operate_c, it.reset_c])
     }
 
-    /// Advances the parts by a part of a second, s, in which the air goes to `air_c`.
+    /// Advances the parts by `dt_s`, less than a second, in which the air goes to `air_c`.
     pub fn step(&mut self, dt_s: f64, air_c: f64) {
         self.now_s += dt_s;
         if self.now_s + 1e-9 < self.due_s {

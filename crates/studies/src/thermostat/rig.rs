@@ -21,10 +21,11 @@ use machine::dut::thermostat::points::Points;
 use rigsim::world::oven::{ChamberValues, SensorValues};
 use std::sync::Arc;
 
-/// Temperature of the air at which a batch begins, right after the one before, C; that one went up to the other temperature.
+/// Temperature of the air at which a batch begins, right after the one before, C.
 const START_C: f64 = 45.0;
+/// Highest temperature of the air in the batch before, C.
 const BEFORE_C: f64 = 90.0;
-/// Power of the heater on the way there, 1 = full heater.
+/// Power of the heater on the way to [`BEFORE_C`], 1 = full heater.
 const BEFORE: f64 = 0.2;
 /// Temperature below which a batch ends, C.
 const END_C: f64 = 54.0;
@@ -40,7 +41,7 @@ pub struct Rig {
     seed: u64,
     values: ChamberValues,
     sensors: [SensorValues; 2],
-    /// The recipe on a rig that knows its chamber and nothing of the lot.
+    /// The device that the recipe makes on a rig that has identified its chamber and tested no part of the lot.
     device: Device,
 }
 
@@ -50,7 +51,7 @@ pub struct Outcome {
     pub parts: Vec<(SocketResult, [f64; 2])>,
     /// Duration without loading, min.
     pub minutes: f64,
-    /// What the machine knows before the next batch of the lot.
+    /// What the machine has learned for the next batch of the lot.
     pub lesson: Arc<Lesson>,
     /// Time (min) and reading of the reference sensor (C), every ten seconds.
     pub curve: Vec<[f64; 2]>,
@@ -191,7 +192,7 @@ struct Running {
 }
 
 impl Running {
-    /// Runs a second.
+    /// Runs one second of the batch.
     fn second(&mut self, device: &Device) -> anyhow::Result<()> {
         self.record.push(self.plant.reference_c());
         let command = match self.is_over {
@@ -238,8 +239,9 @@ impl Running {
     }
 }
 
-/// Makes the device of the recipe on the rig that comes with the program, without slow repeats, and with the calibration of
-/// the study: a chain and sockets that need no correction, with the uncertainties from which their errors are drawn.
+/// Makes the device of the recipe on the rig that comes with the program, without confirmation measurements. In its
+/// calibration, measuring chain and sockets need no correction; their uncertainties are those with which the study
+/// draws their errors.
 fn device(kind: Kind) -> anyhow::Result<Device> {
     let folder = Folder::built_in_rig("thermostat").context("a rig that comes with the program")?;
     let plant = Configuration::load(&folder)?;

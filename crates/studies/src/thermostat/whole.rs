@@ -1,5 +1,5 @@
-//! Whole batches by the program on the simulated rig: do the stated uncertainties cover the truth, are the verdicts right,
-//! how long does a batch take on this computer, and does a slow bus change anything?
+//! Whole batches by the program on the simulated rig. Shows whether the stated uncertainties cover the truth, whether
+//! the verdicts are right, how long a batch takes on this computer, and whether a slow bus changes anything.
 
 use super::Scope;
 use super::program::{Change, Lot, Ran, run};
@@ -13,7 +13,8 @@ const RECIPES: [(&str, &str); 2] = [
     ("thermostat-ksd9700", "KSD9700"),
     ("thermostat-ksd301", "KSD301"),
 ];
-/// Latencies of the bus, ms, beside the usual one; the configuration refuses slower ones, whose emergency stop takes over 2 s.
+/// Latencies of the bus, ms, beside the usual one. The configuration refuses a slower bus, on which the emergency stop
+/// would take more than 2 s.
 const LATENCIES_MS: [f64; 3] = [5.0, 20.0, 50.0];
 /// Lots of each kind.
 const LOTS: u64 = 6;
@@ -25,7 +26,8 @@ const KEYS: [&str; 3] = [
     "reset_temperature_c",
     "differential_k",
 ];
-/// Least coverage of some hundred values, percent: U that covers 95 % falls below it once in a hundred times.
+/// Least coverage of some hundred values, percent: if U covers 95 % of all values, a sample falls below this once in a
+/// hundred times.
 const COVERED: f64 = 91.0;
 /// Longest wall time of a batch on a quiet machine, s.
 const WALL_S: f64 = 10.0;
@@ -52,7 +54,7 @@ pub fn figures(scope: &Scope) -> anyhow::Result<Vec<Vec<Figure>>> {
     Ok(groups)
 }
 
-/// Returns a lot; a bus that is slower than usual needs modules that are allowed more time.
+/// Returns a lot. On a bus that is slower than usual, the configuration allows the modules more time.
 fn lot(recipe: &'static str, seed: u64, latency_ms: Option<f64>) -> Lot {
     let changes = latency_ms.map(|it| {
         let change = |file, from, to| Change { file, from, to };
@@ -89,7 +91,7 @@ fn lot(recipe: &'static str, seed: u64, latency_ms: Option<f64>) -> Lot {
     }
 }
 
-/// Error and uncertainty of a value of each good part that has it.
+/// Returns error and expanded uncertainty of the value `key` for every good part that has this value.
 fn errors(lots: &[Ran], key: &str) -> Vec<(f64, f64)> {
     let of = |lot: &Ran| {
         let good = lot.parts.iter().filter(|it| lot.is_good(it));

@@ -31,13 +31,14 @@ impl Kind {
 pub struct World {
     /// Name in reports.
     pub name: &'static str,
-    /// Ratio of the lag of the parts to that in the default world, in every other socket.
+    /// Ratio of the lag of the parts to that in the default world: one value for the even sockets, one for the odd
+    /// ones.
     pub lag: [f64; 2],
     /// Scatter of a switching from cycle to cycle, one standard deviation, K.
     pub scatter_k: f64,
     /// Ratio of the power of the heater to the nominal one.
     pub mains: f64,
-    /// Ratio of the power of the heater to the nominal one after a step of the mains in the middle of a batch.
+    /// The same ratio after the mains voltage has stepped in the middle of a batch.
     pub mains_later: f64,
     /// Temperature of the room, C; `None` draws it from 18 to 28 C.
     pub ambient_c: Option<f64>,

@@ -34,7 +34,7 @@ pub struct Case {
     pub end_s: f64,
 }
 
-/// Keys of a case; the reader ignores the second half, a note and answers.
+/// Keys of a case. The reader ignores those of the second half: a note, and answers.
 const KEYS: &[&str] = &[
     "name",
     "changed",

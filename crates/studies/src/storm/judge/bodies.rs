@@ -1,5 +1,7 @@
-//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that every row has
-//! a body, and that no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the
+//! Checks that every body lies in the bin that its row names, or that an alarm declares it lost. Checks that every row
+//! has a body, and that no body has two rows.
+//!
+//! The truth of the rig assigns rows to bodies: by the body in the nest at the
 //! verdict, and by the body that came to rest in the bin when the beam confirmed the part. A body that clung to another
 //! one has no row, because the rig never judged it; the alarm of the beam that counted this body names its bin.
 
