@@ -3,8 +3,9 @@
 //!
 //! `-- counts` starts this program again under callgrind, once per row and contestant; callgrind counts inside
 //! [`counted`]. The simulated caches have the sizes of [`CACHES`] on every machine. The simulated branch predictor is
-//! simpler than that of today's processors, so its count is one for questions that a processor has not learned. With
-//! cold caches `lines fetched` counts the lines of data from memory, those of stack, constants and question included.
+//! simpler than that of today's processors: its count resembles that of a processor that has not learned the questions.
+//! With cold caches `lines fetched` counts the cache lines of data that come from memory, including those of stack,
+//! constants and question.
 
 use std::fs;
 use std::hint::black_box;
@@ -160,7 +161,7 @@ fn questions(world: &World, ways: &[Move], state: &str, contestant: &str) {
     }
 }
 
-/// Asks the questions `first` to warm the caches, then counts the questions `then`.
+/// Asks the questions `first` to warm the caches, then counts what the questions `then` cost.
 fn all<Q, A>(first: &[Q], then: &[Q], is_cold: bool, mut ask: impl FnMut(&Q) -> A) {
     println!("{}", then.len());
     let mut ballast = vec![0u8; if is_cold { FLUSHED_BYTES } else { 0 }];

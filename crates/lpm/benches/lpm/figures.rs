@@ -9,9 +9,10 @@ use serde_json::{Value, json};
 
 /// Number of elements at which the bars apply.
 const ELEMENTS: usize = 1_000;
-/// Bars: least ratio of an edit of the peer's raw tree to an edit of the core's model, mean and 99th percentile.
+/// Bars: least ratio of the time of an edit of the peer's raw tree to that of an edit of the core's model, for the mean
+/// and for the 99th percentile.
 const EDIT_BARS: [Option<f64>; 2] = [Some(4.0), Some(3.0)];
-/// Bar: least ratio of a rebuild of the peer's compound to an edit of the core's model.
+/// Bar: least ratio of the time of a rebuild of the peer's compound to that of an edit of the core's model.
 const REBUILD_BAR: f64 = 1_000.0;
 
 /// Prints a figure of this benchmark.

@@ -2,10 +2,15 @@
 //!
 //! Prints nanoseconds, and the ratios of peer to core for mean and 99th percentile: with warm caches, in random order,
 //! and with cold caches. Prints how many answers differ and, below a missed bar (a ratio that the core must reach),
-//! where the time goes ([`missed`]). `-- --quick` stops at 1,000 elements, `-- --bar` measures only 1,000 elements, `--
-//! --growth` measures how the cost of the core alone grows from 10 to 100,000 elements. `--json` prints the questions
-//! with a bar, at 1,000 elements or over all sizes (`--growth`), as figures, one line of JSON each. `-- counts` counts
-//! instructions, branches and cache lines per question under valgrind ([`counts`]).
+//! where the time goes ([`missed`]).
+//!
+//! | argument after `--` | effect |
+//! |---|---|
+//! | `--quick` | stops at 1,000 elements |
+//! | `--bar` | measures at 1,000 elements only |
+//! | `--growth` | measures how the cost of the core alone grows from 10 to 100,000 elements ([`growth`]) |
+//! | `--json` | prints figures, one line of JSON each: the questions with a bar at 1,000 elements, or with `--growth` every cost |
+//! | `counts` | counts instructions, branches and cache lines per question under valgrind ([`counts`]) |
 
 mod answers;
 mod counts;
