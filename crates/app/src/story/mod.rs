@@ -2,7 +2,7 @@
 //!
 //! A script ([`script`]) names faults and operator orders, each after an event instead of at a time, so a faster line
 //! gives the same story. The `narrator` writes what a mechanic beside the rig sees, leaves out unrelated events, and
-//! counts whole seconds from the first trouble.
+//! counts whole seconds from the first action of the script or the first alarm.
 //!
 //! A story is attended: alarms and stops do not end the run. The story ends when the script is played and the lot is
 //! complete or stopped, or after [`SILENCE_TIMEOUT`] without an event.

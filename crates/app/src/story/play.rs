@@ -39,7 +39,7 @@ pub(super) struct Player {
     journal: Option<File>,
 }
 
-/// Events so far for which a step of the script may wait.
+/// Events so far, of those for which a step of the script may wait.
 #[derive(Debug, Default)]
 struct Observed {
     lot: bool,

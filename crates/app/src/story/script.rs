@@ -9,7 +9,7 @@
 //! after state Aborted +5      order clear
 //! after state Stopped         order jog motion=probes_up
 //! ```
-//! The first comment is the title. The player carries out the lines that begin with `after` in sequence.
+//! The first comment is the title. The player carries out the lines that begin with `after` one after the other.
 
 use anyhow::{Context, bail};
 use machine::station::packml::State;
