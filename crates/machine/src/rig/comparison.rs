@@ -172,7 +172,7 @@ impl Comparison<'_> {
     pub(super) fn safe_level(&self, found: Level) -> Option<Mismatch> {
         let safe = self.module.safe_volts;
         let volts = found.in_units(self.module.type_code).unwrap_or(f64::NAN);
-        // Two steps of a 12-bit output may differ.
+        // The comparison accepts a difference of two steps of a 12-bit output.
         if (volts - safe).abs() <= 0.005 {
             return None;
         }

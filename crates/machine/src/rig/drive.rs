@@ -28,7 +28,7 @@ pub enum DriveError {
         /// The output.
         point: DigitalOut,
     },
-    /// The motion names one jaw, or moves the jaws apart; one valve drives both.
+    /// The motion names only one jaw, or sends both to different ends; one valve drives both.
     #[error("one valve drives both jaws: the motion must move both the same way")]
     LoneJaw,
     /// The axis has no point at the target.
@@ -202,8 +202,8 @@ impl Outputs {
         }
     }
 
-    /// Sets one of the outputs whose sum is the coil supply to its share `supply`, volts of the supply. Returns the
-    /// share that the nearest step of the output gives.
+    /// Sets one of the analog outputs whose sum is the coil supply. `supply` is its share, volts of the supply. Returns
+    /// the share that the nearest step of the output gives.
     ///
     /// # Errors
     /// Fails for a voltage beyond the range of the output, and then changes nothing.

@@ -44,8 +44,8 @@ pub enum SupplyError {
     },
 }
 
-/// Greatest voltage below zero, V at the terminal, that counts as an offset beyond the reach of the output; the output
-/// then gets zero.
+/// Greatest distance below zero, V at the terminal, at which the output gets zero instead: the offset of the output
+/// asks for it, and the output cannot go below zero. A lower level is an error.
 const UNREACHABLE_OFFSET_V: f64 = 0.02;
 
 impl Wiring {

@@ -1,23 +1,24 @@
 //! The worst-case reaction time to the emergency-stop contact, derived from the wiring.
 //!
-//! Every second transaction of the contact's line reads its module, whatever writes and beam counts wait. In the worst
-//! case the contact opens just after a read. The bound then adds up:
+//! Every second transaction on the line of the contact reads the contact's module, however many writes and beam counts
+//! wait. In the worst case the contact opens just after the module has sampled it for such a read. The bound is the sum
+//! of these times:
 //!
-//! - the remainder of that poll: the answer, its repetition and the answer to a request for the module's name, each at
-//!   the last moment. A line asks for all three after any of its modules was silent, because the late reply of that
-//!   module could be taken for the contact's,
-//! - one other transaction, the longest of that line, which fails: a first answer at the last moment, which the line
-//!   does not trust yet and therefore asks for again, a time-out, the request for the silent module's name, also
-//!   unanswered, and a wait for silence that a late reply breaks once,
-//! - the poll that reads the open contact, as long as the first. If it gets no answer it occupies the line longer, with
-//!   the same result: a contact older than [`Wiring::emergency_stop_max_age`] counts as open, and the remainder of that
-//!   poll passes before the first write,
-//! - one write to each module of the line that has outputs, answered at the last moment,
+//! - The rest of this read: the answer, a repetition and a request for the module's name, each answered at the last
+//!   moment. A line needs the repetition and the name after any of its modules was silent, because a late reply of that
+//!   module could be taken for the contact's.
+//! - One other transaction, the longest of that line, which fails. Its first answer comes at the last moment; the line
+//!   does not trust it yet and asks again. A time-out follows, then a request for the name of the silent module, also
+//!   without answer, and a wait for silence that a late reply breaks once.
+//! - The read that finds the contact open, as long as the first one. If it gets no answer, it occupies the line longer,
+//!   with the same result: a contact older than [`Wiring::emergency_stop_max_age`] counts as open, and the rest of that
+//!   read passes before the first write.
+//! - One write to each module of the line that has outputs, answered at the last moment.
+//! - A turnaround of two characters after each transaction.
 //!
-//! and a turnaround of two characters after each. A line without the contact begins its writes after the longest of its
-//! own transactions. A late reply begins at most one allowance after the time-out. Commands on this line have one try
-//! ([`Wiring::tries_on`]). Wire times are those of 8N1, ten bits a character; no frame of a running lot is longer than
-//! the frames assumed here.
+//! A line without the contact begins its writes after the longest of its own transactions. A late reply begins at most
+//! one allowance after the time-out. Commands on this line have one try ([`Wiring::tries_on`]). Wire times are those of
+//! 8N1, ten bits a character; no frame of a running lot is longer than the frames assumed here.
 
 use super::fault::Fault;
 use super::handling::Handling;

@@ -28,7 +28,7 @@ pub struct RigSettings {
     /// Analog outputs by point name.
     #[serde(default)]
     pub analog_out: BTreeMap<String, AnalogOutSettings>,
-    /// Ranges of the supply by name; empty where the supply has only one.
+    /// Ranges of the coil supply by name; empty where the supply has only one range.
     #[serde(default)]
     pub supply_range: BTreeMap<String, SupplyRangeSettings>,
     /// Gated counters by point name.
@@ -164,7 +164,7 @@ impl AnalogOutSettings {
 pub struct SupplyRangeSettings {
     /// Bits of the two outputs that select the range; the two inputs read back the same bits.
     pub code: u8,
-    /// Factor by which the range multiplies the gains of the sources and divides those of the inputs behind the
+    /// Factor by which the range multiplies the gains of the sources and divides the gains of the inputs behind the
     /// amplifier.
     pub factor: f64,
     /// Highest voltage of the supply, V.

@@ -1,4 +1,5 @@
-//! Ranges of the supply: an amplifier whose gain two outputs of the rig select and two inputs read back.
+//! Ranges of the coil supply. Its amplifier has several gains: two outputs of the rig select one, and two inputs read
+//! it back.
 //!
 //! The gains in `config/rig.toml` are those at factor 1. A lot runs in one range: [`Wiring::in_range`] returns the
 //! wiring with the gains of that range, so that the code for levels, readings and rates needs to know no range.
@@ -16,7 +17,7 @@ pub const SELECT: [&str; 2] = ["supply_range_0", "supply_range_1"];
 /// Inputs that read the range back, bit 0 first.
 pub const READ_BACK: [&str; 2] = ["supply_range_0_set", "supply_range_1_set"];
 
-/// Longest time until the relays of a range have switched while all sources are at zero.
+/// Longest time that the relays of a range may take to switch, with all sources at zero.
 pub const SWITCHING_TIMEOUT: Span = Span::ms(500);
 
 /// One range of the supply.

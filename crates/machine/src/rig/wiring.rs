@@ -123,9 +123,9 @@ pub struct Wiring {
     /// Range for which the gains hold; `None` for the gains of `config/rig.toml`, at factor 1.
     pub supply_range: Option<SupplyRange>,
     /// Inputs of the machine, then those of the fixtures, then beams or contacts of sockets. An input that only the
-    /// other handling needs has no terminal.
+    /// other handling (feeder or rack) needs has no terminal.
     pub(super) digital_in: Vec<(String, Option<Terminal>)>,
-    /// Outputs of the machine, then of the fixtures; as with inputs, some have no terminal.
+    /// Outputs of the machine, then of the fixtures. An output that only the other handling needs has no terminal.
     pub(super) digital_out: Vec<(Switch, Option<Terminal>)>,
     pub(super) analog_in: Vec<(Quantity, AnalogTerminal)>,
     pub(super) analog_out: Vec<(&'static str, AnalogTerminal)>,
@@ -324,7 +324,7 @@ impl Wiring {
             .map(|at| (self.digital_out[at].0.name, DigitalOutput::at(at)))
     }
 
-    /// Yields name and state of every digital signal of a module, whose channels have the levels `bits`.
+    /// Yields name and state of every digital signal of a module; bit n of `bits` is the level of channel n.
     pub fn signals(&self, module: ModuleId, bits: u16) -> impl Iterator<Item = (&str, bool)> {
         let inputs = self.digital_in.iter().map(|it| (it.0.as_str(), it.1));
         let outputs = self.digital_out.iter().map(|it| (it.0.name, it.1));
@@ -334,7 +334,7 @@ impl Wiring {
         all.map(move |(name, terminal)| (name, terminal.read(bits)))
     }
 
-    /// Returns the lines with points of a fixture, on which measuring jobs run; in order, each once.
+    /// Returns the lines that have points of a fixture, and on which measuring jobs therefore run; in order, each once.
     pub fn measuring_lines(&self) -> Vec<LineId> {
         let inputs = self.digital_in[DigitalIn::COUNT..self.before_beams].iter();
         let outputs = self.digital_out[DigitalOut::COUNT..].iter();
