@@ -19,32 +19,34 @@ const REFERENCE: f64 = 0.001;
 const DELAY_S: f64 = 5e-6;
 /// Delay that remains after a reference has corrected it, half width, s: amplifiers of two scales differ by less.
 const DELAY_LEFT_S: f64 = 0.2e-6;
-/// Error of a gain after correction by a reference that was measured at another scale, as a share: either scale adds 0.1 %
-/// (half width) of its own, so that the difference has the uncertainty of this half width.
+/// Error of a gain that a reference has corrected at another scale, half width, as a share. Each of the two scales has
+/// an error of its own of 0.1 % (half width); this half width has the uncertainty of both together.
 const GAIN_LEFT: f64 = 0.001 * SQRT_2;
 /// Difference between the fitted line voltage and the true curve (higher harmonics), half width, as a share of the
 /// value.
 const CURVE: f64 = 0.005;
 
-/// Error of a channel between its zero and its ends that a reference does not correct, half width, as a share of its
-/// range: a step of a converter of 12 bits.
+/// Deviation of a channel from a straight line between its zero and its ends, half width, as a share of its range: a
+/// step of a converter of 12 bits. No reference corrects it.
 const LINEARITY: f64 = 2.5e-4;
-/// Share of that error of the clamped channel which is left below the reference: a smooth curve that is right at 0 and at
-/// 0.7 of its end bends by 0.7³ as much between them.
+/// Share of [`LINEARITY`] that the clamped channel keeps below the voltage of its reference: a smooth curve that is
+/// right at 0 and at 0.7 of its end bends by 0.7³ as much between them.
 const LEFT: f64 = 0.343;
 /// Vertical divisions of the range of a channel.
 const SCREEN: f64 = 8.0;
-/// Smallest peak whose share of the range matters: below it the curve is a straight line.
+/// Smallest peak, as a share of the range, at which the deviation counts in full. Below it the channel is straight, so
+/// the deviation falls with the peak.
 const LEAST: f64 = 0.02;
 
-/// Slow deviation of the mains from its amplitude, standard deviation, as a share, and the time in which it changes, s.
+/// Slow deviation of the mains from its amplitude, standard deviation, as a share.
 const WANDERS: f64 = 0.01;
+/// Time in which this deviation changes, s.
 const WANDERS_S: f64 = 5.0;
-/// Share of the capacitive current that such a mains turns into phase with the voltage within the record of a leakage,
-/// standard deviation.
+/// Share of the capacitive current that seems to be in phase with the voltage within the record of a leakage, because
+/// the mains deviates so; standard deviation.
 const TURNS: f64 = 1.4e-4;
 
-/// Share of the distortion by which the mains moves it, standard deviation.
+/// Change of the distortion by deviations of the mains, as a share of the distortion, standard deviation.
 const WAITS: f64 = 0.024;
 
 /// Part of a leakage.
@@ -52,9 +54,9 @@ const WAITS: f64 = 0.024;
 pub enum LeakageOf {
     /// The whole, rms.
     Whole,
-    /// In phase with the voltage.
+    /// The part in phase with the voltage.
     Resistive,
-    /// A quarter of a period ahead.
+    /// The part a quarter of a period ahead of the voltage.
     Capacitive,
 }
 
@@ -87,8 +89,8 @@ pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> 
             .with_bounds("gain of the shunt", (gain + SHUNT_ERROR) * value_a / ua)
             .with_bounds("delay", turned_a(DELAY_S) / ua);
     };
-    // The reference in the same line has shown the product of shunt and gains, at another scale of the shunt channel and at
-    // another voltage of the divided one.
+    // The reference in the same line has shown the product of shunt and gains, at another scale of the shunt channel
+    // and at another voltage of the divided one.
     let reference_a = ac.peak_v() / (LINE_OHM + REFERENCE_OHM);
     let reference = bent(ac.reference_shunt_v(), reference_a * LINE_SHUNT_OHM);
     let divided = bent(scales.divided_v, ac.peak_v() / DIVIDER);
@@ -103,14 +105,14 @@ pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> 
         .with_random("mains", turned_a(TURNS / TAU / ac.mains_hz) / ua)
 }
 
-/// Returns the error of a sine that the curve of a channel makes, half width, as a share: `scale_v` is the scale in volts
-/// per division, `peak_v` the peak at the channel.
+/// Returns the error of the amplitude of a sine by the deviation of a channel from a straight line, half width, as a
+/// share of the amplitude. `scale_v` is the scale in volts per division, `peak_v` the peak at the channel.
 fn bent(scale_v: f64, peak_v: f64) -> f64 {
     LINEARITY * SCREEN * scale_v / peak_v.max(LEAST * SCREEN * scale_v)
 }
 
-/// Returns the budget of a time from the pulse train, microseconds: the mean of `count` instants, each known to one
-/// interval of the samples.
+/// Returns the budget of a time from the pulse train, microseconds: the mean of `count` instants, each known to within
+/// one interval of the samples.
 pub fn line_time(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Budget {
     let slope = walk
         .mains
@@ -122,8 +124,8 @@ pub fn line_time(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Bu
         .with_random("zero of the mains", zero_us)
 }
 
-/// Returns the budget of a time that counts from the trigger, microseconds: all edges share the interval of the samples in
-/// which the trigger lies. The pulses behind the mean lie half of the train after the trigger in the mean.
+/// Returns the budget of a time that counts from the trigger, microseconds. All edges share the interval of the samples
+/// in which the trigger lies. The averaged pulses lie half of the train after the trigger on average.
 pub fn from_trigger(plan: &Plan, walk: &Walk, (took_us, count): (f64, usize)) -> Budget {
     Budget::default()
         .with_bounds(
@@ -140,8 +142,8 @@ fn base_us(plan: &Plan, walk: &Walk) -> f64 {
     (plan.time.gain(ends_s) + plan.time.offset) * 1e6
 }
 
-/// Returns the half width of the error of a jump that lies in the middle of two samples a `step` apart, as the mean of
-/// `count` of them.
+/// Returns the half width of the error of the mean of `count` jumps, each taken to lie in the middle between two
+/// samples a `step` apart.
 fn sampled(step: f64, count: usize) -> f64 {
     step / 2.0 / (count as f64).sqrt()
 }
@@ -193,8 +195,8 @@ pub fn line_drop(plan: &Plan, ac: &AcPlan, on: &OnState, value_v: f64) -> Budget
         .with_random("noise", COLD * on.noise_v)
 }
 
-/// Returns the budget of the mean voltage of the conducting output (DC offset), mV. The curve of a channel is odd, as that
-/// of a symmetrical input stage, and cancels between the polarities.
+/// Returns the budget of the mean voltage of the conducting output (DC offset), mV. The curve of a channel is odd, as
+/// that of a symmetrical input stage, and cancels between the polarities.
 pub fn line_offset(ac: &AcPlan, on: &OnState) -> Budget {
     let budget = Budget::default().with_random("jumps", on.offset_v.1 * 1e3);
     match on.referenced {
@@ -206,7 +208,8 @@ pub fn line_offset(ac: &AcPlan, on: &OnState) -> Budget {
 /// Returns the budget of the difference of the half cycles, percent.
 pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
     let pct = |volts: f64| volts / LOOP_SHUNT_OHM / on.mean_a * 100.0;
-    // The halves that a window has more of one polarity at its end than at its begin, of all of them.
+    // Growth of the mains over the record, as a share. By it a half cycle exceeds the one before by `grows / (2 *
+    // periods)`; the result, which compares the polarities with their sum, changes by half of that.
     let grows = WANDERS * (2.0 * on.periods / ac.mains_hz / WANDERS_S).sqrt();
     let budget = Budget::default()
         .with_random("jumps", on.unequal.1 * 100.0)
@@ -217,8 +220,8 @@ pub fn unequal(ac: &AcPlan, on: &OnState) -> Budget {
     }
 }
 
-/// Returns the budget of the rise of the drop by heat, mV. The offset is in both drops and cancels; the mains does not matter,
-/// because both are drops at the rated current.
+/// Returns the budget of the rise of the drop by heat, mV. The offset is in both drops and cancels; the mains does not
+/// matter, because both are drops at the rated current.
 pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
     let gain_share = gain(ac, on.referenced.is_some());
     Budget::default()
@@ -226,8 +229,8 @@ pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
         .with_random("noise", WARMED * on.noise_v * 1e3)
 }
 
-/// Returns the budget of a distortion, mV, from that of a drop of the same size: the mains, whose harmonics and amplitude
-/// differ from the nominal ones, moves the instants at which the output waits.
+/// Returns the budget of a distortion, mV, from that of a drop of the same size. The mains, whose harmonics and
+/// amplitude differ from the nominal ones, moves the times for which the output waits for its voltage.
 pub fn distortion(drop: &Budget, value_v: f64) -> Budget {
     scaled(drop, 1e3).with("mains", WAITS * value_v * 1e3)
 }

@@ -31,8 +31,9 @@ const HALF_SCREEN: f64 = 3.5;
 const REFERENCE: f64 = 0.8;
 /// Ratio of the end of a scale to the limit that it must show.
 const ROOM: f64 = 1.2;
-/// Drop (V peak) and, in the next line, leakage (A rms) that choose the scales when the recipe has no limit.
+/// Drop that chooses the scales when the recipe does not limit the drop, V peak.
 const USUAL_DROP_V: f64 = 2.0;
+/// Leakage that chooses the scales when the recipe does not limit the leakage, A rms.
 const USUAL_LEAKAGE_A: f64 = 5e-3;
 /// Least scale of the shunt channel, V per division.
 const LEAST_SCALE_V: f64 = 0.5e-3;
@@ -47,9 +48,9 @@ const BLOCKS_PERIODS: f64 = 1.5;
 const CONDUCTS_PERIODS: f64 = 1.05;
 /// Time of the conducting output in the loop, s, for the drift from 10 ms to 200 ms.
 pub const LOOP_S: f64 = 0.212;
-/// Half periods of the mains from the start of a pulse to the next, without the step of the phase; the next number is
-/// the length of a pulse in half periods.
+/// Half periods of the mains from the start of a pulse to that of the next, without the step of the phase.
 const BETWEEN_HALVES: f64 = 3.0;
+/// Length of a pulse, half periods of the mains.
 const PULSE_HALVES: f64 = 1.5;
 /// Share of a record before its trigger.
 pub const BEFORE: f64 = 0.02;
@@ -188,7 +189,7 @@ impl AcPlan {
         self.line(0.0, 0.0).shunt_v
     }
 
-    /// Returns the scales of a record that only shows whether the output blocks from `off_s` after its trigger on.
+    /// Returns the scales of a record that only shows whether the output blocks from `off_s` after its trigger onwards.
     pub fn blocks(&self, off_s: f64) -> Scales {
         Scales {
             shunt_v: self.leakage_scale_v,
@@ -196,12 +197,12 @@ impl AcPlan {
         }
     }
 
-    /// Returns the scales of a record that shows whether the output conducts from `on_s` after its trigger on.
+    /// Returns the scales of a record that shows whether the output conducts from `on_s` after its trigger onwards.
     pub fn conducts(&self, on_s: f64) -> Scales {
         self.line(self.after(on_s, CONDUCTS_PERIODS), 1e3)
     }
 
-    /// Returns the length of a record that has this number of periods from a time after its trigger on, s.
+    /// Returns the length of a record that still has this number of periods at `wait_s` after its trigger, s.
     fn after(&self, wait_s: f64, periods: f64) -> f64 {
         (wait_s + 2.0 * periods * self.half_s()) / (1.0 - BEFORE)
     }

@@ -6,12 +6,13 @@ use crate::gauge::Budget;
 use crate::gauge::budget::rectangular;
 use scpi::Accuracy;
 
-/// Noise of the cold drop and (the next constant) of the drift, both read from a curve through the drops of all periods,
-/// over the noise of one drop, for a junction with a time constant of one period.
+/// Noise of the cold drop, divided by the noise of the drop of one period. A curve through the drops of all periods
+/// gives the cold drop; the value holds for a junction with a time constant of one period.
 pub const COLD: f64 = 2.6;
-/// See [`COLD`].
+/// As [`COLD`], of the drift.
 pub const WARMED: f64 = 1.1;
-/// The same of the difference between the cold drops at full and at half current; their errors by the curve are alike.
+/// As [`COLD`], of the difference between the cold drops at full and at half current, whose errors by the curve are
+/// alike.
 const APART: f64 = 2.4;
 
 /// Averaging time of the reading that shows whether a leakage has settled, periods of the mains.
@@ -22,8 +23,8 @@ pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
     rectangular(accuracy.gain(value)).hypot(rectangular(accuracy.offset))
 }
 
-/// Returns the part of a difference of two readings, A, that noise does not explain: only that shows a current that
-/// settles.
+/// Returns the part of a difference of two readings, A, that noise does not explain. Only this part shows that the
+/// current still settles.
 fn beyond(moved: f64, noise_a: f64) -> f64 {
     (moved.abs() - 3.0 * noise_a).max(0.0)
 }
@@ -74,8 +75,8 @@ pub fn threshold(plan: &Plan, volts: f64, width_v: f64) -> Budget {
         .with_random_bounds("step", width_v / 2.0)
 }
 
-/// Returns the budget of a threshold of the control voltage, V, found by a ramp with levels `step_v` apart. The output is
-/// late by up to `lag_v`, of which the result allows for half.
+/// Returns the budget of a threshold of the control voltage, V, found by a ramp with levels `step_v` apart. The output
+/// is late by up to `lag_v`, of which the result allows for half.
 pub fn ramp(plan: &Plan, volts: f64, step_v: f64, lag_v: f64) -> Budget {
     Budget::default()
         .with_bounds("source gain", plan.input.source.gain(volts))
@@ -100,7 +101,8 @@ pub fn time(plan: &Plan, step_s: f64, control: &Crossing, output: &Crossing) -> 
 }
 
 /// Returns the budget of a resistance, milliohms, from the drops at half and at full current. The offsets of source and
-/// meter are the same at both and cancel. `warmth_v` is the half width of what heat leaves in the drop at half current, V.
+/// meter are the same at both and cancel. `warmth_v` is the half width of the error that remaining heat makes in the
+/// drop at half current, V.
 pub fn resistance(plan: &DcPlan, ohm: f64, warmth_v: f64) -> Budget {
     let (source, meter) = (&plan.drop.source, &plan.drop.meter);
     let apart_a = plan.drop_a / 2.0;
@@ -112,8 +114,8 @@ pub fn resistance(plan: &DcPlan, ohm: f64, warmth_v: f64) -> Budget {
         .with_random("noise", noise_v / apart_a * 1e3)
 }
 
-/// Returns the budget of a drop at the rated current, V, before that current has warmed the part, from the budget of the
-/// resistance in milliohms.
+/// Returns the budget of a drop at the rated current, V, before that current has warmed the part, from the budget of
+/// the resistance in milliohms.
 pub fn drop_at_rated(plan: &DcPlan, resistance: &Budget) -> Budget {
     let mut budget = resistance.clone();
     for term in &mut budget.0 {
@@ -131,7 +133,7 @@ pub fn drift(plan: &DcPlan, rise_v: f64) -> Budget {
         .with_random("noise", noise_v * 1e3)
 }
 
-/// Adds to the budget of a current of the LED what the error of the applied voltage makes of it. The current is that of
+/// Adds to the budget of a current of the LED its error by that of the applied voltage. The current is taken as that of
 /// the voltage above the knee of the LED through its resistor.
 pub fn applied(budget: Budget, range: &CurrentRange, volts: f64, value: f64) -> Budget {
     const KNEE_V: f64 = 1.2;

@@ -17,7 +17,7 @@ const OFF: f64 = 0.1;
 const JUMP: f64 = 0.5;
 /// Least height of the pulse, in standard deviations of the noise before it.
 const DISTINCT: f64 = 8.0;
-/// Codes that a converter of 8 bits has at least between the levels of a signal.
+/// Least number of codes of a converter of 8 bits between the levels of a signal.
 const FEWEST_CODES: f64 = 100.0;
 /// Number of samples on either side of an edge that give its slope.
 const AROUND: usize = 2;

@@ -1,4 +1,4 @@
-//! Findings of the test of a solid-state relay beside its figures.
+//! Findings of the test of a solid-state relay, in addition to its results.
 
 use super::bins;
 use super::parameter::Parameter;

@@ -6,9 +6,9 @@ use crate::dut::made_up::{MadeUp, Scatter};
 use crate::dut::recipe::Limits;
 use crate::gauge::Budget;
 
-/// Ratio of the mean to an upper limit without a lower one; the next constant is that to a lower limit without an upper
-/// one.
+/// Ratio of the mean to the upper limit of a characteristic that has no lower one.
 const BELOW: f64 = 0.6;
+/// Ratio of the mean to the lower limit of a characteristic that has no upper one.
 const ABOVE: f64 = 1.6;
 /// Standard deviation as a share of the mean.
 const SPREAD: f64 = 0.05;

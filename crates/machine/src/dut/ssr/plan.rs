@@ -24,9 +24,11 @@ const MOST_A: f64 = 1.0;
 const ROOM: f64 = 1.2;
 /// Number of time constants after which an output counts as settled where the recipe limits no time.
 const SETTLED: f64 = 10.0;
-/// Currents, A, and drop, V, that choose the ranges where the recipe has no limit.
+/// Input current that chooses its range where the recipe does not limit it, A.
 const USUAL_INPUT_A: f64 = 0.05;
+/// As [`USUAL_INPUT_A`], for a reverse current or a leakage, A.
 const USUAL_SMALL_A: f64 = 1e-3;
+/// Drop that chooses its range where the recipe does not limit it, V.
 const USUAL_DROP_V: f64 = 1.5;
 /// Share of the load current up to which an output counts as blocked where the recipe does not limit its leakage.
 const OFF: f64 = 0.1;
@@ -301,8 +303,8 @@ impl Plan {
         (self.pulse_s() + 2.0 * self.off_s) / 0.9
     }
 
-    /// Returns the number of samples of a record: an interval is at most 1 % of the shorter time, where the memory holds
-    /// as many.
+    /// Returns the number of samples of a record: an interval is at most 1 % of the shorter time, where the memory
+    /// holds as many.
     pub fn samples(&self) -> f64 {
         let wanted = self.record_s() / (0.01 * self.on_s.min(self.off_s));
         let depths = [1e3, 1e4];

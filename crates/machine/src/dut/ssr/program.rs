@@ -23,8 +23,9 @@ const HALF_SCREEN: f64 = 3.5;
 const DIVISIONS: f64 = 10.0;
 /// Share of a record before the trigger.
 pub const BEFORE: f64 = 0.1;
-/// Length of the record of an answer over the time within which the output must answer, and its samples.
+/// Length of the record of an answer, divided by the time within which the output must answer.
 pub const ANSWER: f64 = 2.0;
+/// Samples of the record of an answer.
 const ANSWER_POINTS: f64 = 1e3;
 /// Samples of the record of a ramp.
 const SWEEP_POINTS: f64 = 1e4;
@@ -281,7 +282,8 @@ impl Points {
         self.query(Device::PulseSource, "train", &arguments)
     }
 
-    /// Arms the digitizer with the scales of all channels; the record begins [`ac_plan::BEFORE`] before the rising edge.
+    /// Arms the digitizer with the scales of all channels; the record begins [`ac_plan::BEFORE`] before the rising
+    /// edge.
     pub fn capture_all(&self, plan: &Plan, scales: &Scales) -> Query {
         self.capture_step(
             plan,
@@ -338,7 +340,7 @@ const fn volts(name: &'static str, factor: f64, offset: f64) -> Shown {
     }
 }
 
-/// Returns what the trace shows of a load: its voltage, and its current by its resistance, ohm.
+/// Returns what the trace shows of a load: its voltage, and its current, which follows from its resistance `ohm`.
 fn load(factor: f64, offset: f64, ohm: f64) -> Vec<Shown> {
     let current = Shown {
         name: "load_current",
@@ -350,7 +352,7 @@ fn load(factor: f64, offset: f64, ohm: f64) -> Vec<Shown> {
     vec![volts("load_voltage", factor, offset), current]
 }
 
-/// Returns what a channel shows of a DC part: the output takes from the voltage of the load what it does not conduct.
+/// Returns what a channel shows of a DC part. The voltage of the load is that of the source less that of the output.
 fn dc_shows(channel: f64) -> Vec<Shown> {
     match channel == CONTROL_CHANNEL {
         true => vec![volts("control_voltage", 1.0, 0.0)],

@@ -35,9 +35,9 @@ pub struct Doubt {
     pub ratio: f64,
     /// Standard uncertainty of the current of the fixture at the nominal voltage, A.
     pub stray_a: f64,
-    /// Standard uncertainty of the zero of the clamped channel, V, and (the next field) of the shunt channel in the loop.
+    /// Standard uncertainty of the zero of the clamped channel, V.
     pub zero_v: f64,
-    /// See `zero_v`.
+    /// Standard uncertainty of the zero of the shunt channel in the loop, V.
     pub shunt_zero_v: f64,
 }
 

@@ -11,8 +11,9 @@ struct Record {
     step_s: f64,
     rise_s: f64,
     fall_s: f64,
-    /// Time from the rise to 90 % of the load voltage, and from the fall to 10 %.
+    /// Time from the rise to 90 % of the load voltage.
     on_s: f64,
+    /// Time from the fall to 10 % of the load voltage.
     off_s: f64,
     /// Length of an edge of the output.
     edge_s: f64,

@@ -1,11 +1,11 @@
-//! Turn-on and turn-off voltage of a DC part by one ramp each, as GJB 1515 has it: the part conducts once at its nominal
-//! voltage, then the source sweeps the control from the one limit towards the other, in levels a quarter of the
+//! Turn-on and turn-off voltage of a DC part by one ramp each, as GJB 1515 describes it: the part conducts once at its
+//! nominal voltage, then the source sweeps the control from the one limit towards the other, in levels a quarter of the
 //! resolution apart.
 //!
 //! The digitizer records control and output from the step to the first level on. The record itself shows the level at
 //! which the output switches: the voltages before the first level and at the last one give the scale of the channel, so
-//! that no clock of the source enters the result. The output follows a ramp late by its time constant, of which only the
-//! longest value is known: the result allows for half of that, and the budget for the rest.
+//! that no clock of the source enters the result. The output follows a ramp late by its time constant, of which only
+//! the longest value is known: the result allows for half of that, and the budget for the rest.
 
 use super::conformity::{OFF, ON};
 use super::given::{Given, NotDelivered};
@@ -29,14 +29,16 @@ const LEVELS: f64 = 4.0;
 const LEAST_S: f64 = 1e-4;
 /// Resolution of levels, V: the text of a level holds no further digit.
 const ROUND_V: f64 = 1e-4;
-/// Length of the record over the time of the sweep by its delays and readings, because commands take time too.
+/// Length of the record, divided by the time that delays and readings of the sweep take: commands take time too.
 const ROOM: f64 = 1.5;
-/// Time from the command of a sweep until its first level, at most; and until the digitizer has stored the record.
+/// Longest time from the command of a sweep to its first level, plus that from the end of the record until the
+/// digitizer has stored it.
 const STARTED: Span = Span::ms(30);
-/// Samples beside the trigger that do not count, those that must show a switched output, and those of them that show the
-/// level.
+/// Number of samples on either side of the trigger that do not count.
 const BESIDE: usize = 2;
+/// Number of samples in a row that must show a switched output.
 const SWITCHED: usize = 4;
+/// Number of the first of these samples, whose mean shows the level.
 const SHOW: usize = 2;
 /// Greatest error of the scale of the control channel, as a share.
 const NEAR: f64 = 0.1;
@@ -94,8 +96,8 @@ impl Ramp {
         self.step_v.abs() / self.level_s() * plan.time_constant_s
     }
 
-    /// Returns the level at which the record shows the output switching, V; `None` when it shows no switching or not the
-    /// levels of the ramp.
+    /// Returns the level at which the record shows the output switching, V; `None` when it shows no switching or not
+    /// the levels of the ramp.
     fn level_v(&self, direction: Direction, [control, output]: [&Waveform; 2]) -> Option<f64> {
         let trigger = (-control.start_s / control.step_s).ceil().max(0.0) as usize;
         let has_switched = |it: usize| {
@@ -215,8 +217,9 @@ mod tests {
         count: 151,
         ..UP
     };
-    /// Time of a level, and interval of samples, s.
+    /// Time of a level, s.
     const LEVEL_S: f64 = 4.6e-4;
+    /// Interval between two samples, s.
     const STEP_S: f64 = 2e-5;
 
     /// Control, on a channel with an error of gain and offset, and output of a part that switches at a voltage.

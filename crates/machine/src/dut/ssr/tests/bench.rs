@@ -78,8 +78,8 @@ pub fn recipe(changes: &[(&str, &str)]) -> Arc<Recipe> {
     Arc::new(toml::from_str(&text).unwrap())
 }
 
-/// Gives an image what the modules of the fixture answer to a read: the inputs that are on, and the voltage at the socket,
-/// V.
+/// Gives an image what the modules of the fixture answer to a read: the inputs that are on, and the voltage at the
+/// socket, V.
 pub fn scan(
     image: &mut Image,
     (wiring, points): (&Wiring, &Points),
@@ -136,8 +136,9 @@ pub struct Part {
     pub weak_s: Option<f64>,
     /// Voltage at the socket after the test.
     pub residual_v: f64,
-    /// Program that fails, and program that delivers these numbers instead.
+    /// Program that fails.
     pub failing: Option<(Device, &'static str)>,
+    /// Program that delivers these numbers in place of its own.
     pub spoiled: Option<(&'static str, Vec<f64>)>,
 }
 
@@ -181,14 +182,14 @@ pub struct Bench {
     is_lit: bool,
     is_stuck: bool,
     is_heated: bool,
-    /// Voltage of the source at the output, and whether it is on.
+    /// Voltage of the source at the output, V.
     source_v: f64,
     has_failed: bool,
     record_s: (f64, f64),
     pulse_s: f64,
     /// Level at which the digitizer waits for an edge, and whether for a falling one.
     waits: Option<(f64, bool)>,
-    /// Whether the output was on before the recorded edge, and whether it is long after it.
+    /// Whether the output was on before the recorded edge, and whether it is on long after the edge.
     answer: (bool, bool),
     control_v: f64,
     /// Control voltage before a recorded ramp and at each of its levels, and whether the output is on then.

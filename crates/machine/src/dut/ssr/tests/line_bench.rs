@@ -57,8 +57,9 @@ pub struct LineBench {
     falls: bool,
     train: (f64, f64, f64, f64),
     memory: Vec<Vec<f32>>,
-    /// Number of records on the line so far, and the instant from which on the present one shows it dead.
+    /// Number of records on the line so far.
     pub line_records: usize,
+    /// Instant from which on the present record shows a dead line, s.
     dead_s: f64,
     /// True once the output conducts for good.
     has_stuck: bool,

@@ -36,8 +36,11 @@ pub fn tail(waveform: &Waveform, from_s: f64) -> Waveform {
     }
 }
 
-/// Returns the standard uncertainty that jumps give the mean of samples: each lies anywhere between its two samples. What a
-/// step exceeds the mean of its neighbours by is a jump, of which each neighbour shows another half.
+/// Returns the standard uncertainty that jumps give the mean of samples: a jump may lie anywhere between its two
+/// samples.
+///
+/// From sample to sample, the excess of a step over the mean of the two steps beside it is a jump. A jump also appears,
+/// with half of its size, in the excess of either step beside it; the sum of squares allows for that.
 pub fn jumps_u(samples: &[f64]) -> f64 {
     const OF_ALL: f64 = 12.0 * (1.0 + 0.25 + 0.25);
     let steps: Vec<f64> = samples.windows(2).map(|it| it[1] - it[0]).collect();

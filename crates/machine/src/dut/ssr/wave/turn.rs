@@ -1,18 +1,20 @@
 //! Finds the instants at which the voltage of an output jumps from the curve of the mains to the drop.
 //!
-//! Before the jump the output follows the mains, whose curve is known from the whole record but for a shift from cycle
-//! to cycle; behind it the output stays at its drop. The search tries every split of one and the same window; the split
-//! with the least sum of squares is the jump. The window and its parts are times, so that the result depends neither on
-//! the rate of the samples nor on which of two channels shows them.
+//! Before the jump the output follows the mains, whose curve is known from the whole record except for a shift from
+//! cycle to cycle. Behind the jump the output stays at its drop. The search tries every split of the same window; the
+//! split with the least sum of squares is the jump. The window and its parts are times, so that the result depends
+//! neither on the rate of the samples nor on which of two channels shows them.
 
 use super::Channel;
 use super::mains::Mains;
 
-/// Time before a jump whose samples show the shift of the mains, and time behind it whose samples show the drop, s.
+/// Time before a jump, s: its samples show the shift of the mains.
 const BEFORE_S: f64 = 120e-6;
+/// Time behind a jump, s: its samples show the drop.
 const BEHIND_S: f64 = 50e-6;
-/// Least number of samples before a jump, and (the next constant) behind it.
+/// Least number of samples before a jump.
 const FEWEST_BEFORE: usize = 12;
+/// Least number of samples behind a jump.
 const FEWEST_BEHIND: usize = 2;
 
 /// A jump between two samples.
@@ -30,7 +32,8 @@ pub struct Jump {
     pub index: usize,
 }
 
-/// Returns the first sample from `from` to before `to` with which `count` samples in a row begin that `is_so` accepts.
+/// Returns the first of `count` samples in a row that `is_so` accepts, from `from` to before `to`; `None` without such
+/// a row.
 pub fn run_from(
     is_so: impl Fn(usize) -> bool,
     (from, to): (usize, usize),
@@ -46,8 +49,8 @@ pub fn run_from(
     None
 }
 
-/// Returns the jump whose first sample behind it lies from `from` to `last`, a sample at which the output conducts;
-/// `None` without samples before it.
+/// Returns the jump whose first sample behind it is one from `from` to `last`; at `last` the output conducts. `None`
+/// without samples before the jump.
 pub fn jump(
     channel: &Channel,
     value: impl Fn(usize) -> f64,

@@ -1,10 +1,13 @@
-//! Fits an exponential to a value that changes while a current warms the part, from the cold part on. Each given value
-//! is a mean; the means cover equal times without gaps. The time constant is that of the junction.
+//! Fits an exponential to a value that changes while a current warms the part, beginning with the cold part. Each given
+//! value is a mean over an interval; the intervals are equal and leave no gaps. The time constant is that of the
+//! junction.
 
-/// Range and count of the ratios that the fit tries: each divides the distance of a mean from the final value by that
-/// of the mean before.
+/// Least ratio that the fit tries. The ratio is the distance of a mean from the final value, divided by that of the
+/// mean before.
 const LEAST: f64 = 0.02;
+/// Greatest ratio that the fit tries.
 const MOST: f64 = 0.9;
+/// Number of ratios that the fit tries.
 const TRIED: u32 = 45;
 /// Fewest values of a fit.
 const FEWEST: usize = 5;
@@ -24,30 +27,31 @@ pub fn course(values: &[f64]) -> Option<Course> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Course {
     end: f64,
-    /// Distance from the final value at the begin of the first time.
+    /// Distance from the final value at the begin of the first interval.
     rest: f64,
-    /// Factor by which each time multiplies the distance from the final value.
+    /// Factor by which the distance from the final value changes in each interval.
     ratio: f64,
     squares: f64,
 }
 
 impl Course {
-    /// Returns the value after a number of the equal times; 0 is the cold part.
+    /// Returns the value after this number of intervals; 0 is the cold part.
     pub fn at(&self, times: f64) -> f64 {
         self.end + self.rest * self.ratio.powf(times)
     }
 
-    /// Returns the share of a warming that is left after its end: the mean over one of the equal times, which begins
-    /// `after` of them later.
+    /// Returns the share of a warming that is left after its end: the mean over an interval that begins `after`
+    /// intervals later.
     pub fn left(&self, after: f64) -> f64 {
         self.ratio.powf(after) * (1.0 - self.ratio) / -self.ratio.ln()
     }
 }
 
-/// Fits final value and first distance by least squares, for a distance that each time multiplies by `ratio`.
+/// Fits final value and first distance by least squares, for a distance that changes by the factor `ratio` in each
+/// interval.
 fn fitted(values: &[f64], ratio: f64) -> Course {
     let count = values.len() as f64;
-    // The mean of the exponential over the first time, as a share of its begin.
+    // The mean of the exponential over the first interval, as a share of its value at the begin.
     let first = (1.0 - ratio) / -ratio.ln();
     let shares: Vec<f64> = (0..values.len())
         .map(|it| first * ratio.powi(it as i32))

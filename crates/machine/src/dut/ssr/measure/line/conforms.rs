@@ -39,11 +39,11 @@ const LATE_S: f64 = 0.2;
 /// Polarities that conduct in a period of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Conducting {
-    /// Both.
+    /// Both polarities.
     Both,
-    /// One.
+    /// One polarity.
     One,
-    /// None.
+    /// No polarity.
     None,
 }
 
@@ -74,7 +74,7 @@ pub fn block_acts(
 }
 
 /// Returns the acts that let the part conduct at its nominal voltage for a period and record its answer to a step down
-/// to a level, from the step on. The part must block from `within_s` after the step on.
+/// to a level, beginning with the step. The part must block from `within_s` after the step onwards.
 fn falling_acts(
     state: &mut State,
     (level_v, within_s): (f64, f64),
@@ -96,8 +96,8 @@ fn falling_acts(
     acts
 }
 
-/// Returns true when the record of the digitizer shows an output that blocks from `from_s` after its trigger on; fails
-/// with the reason when the line shows nothing of the output.
+/// Returns true when the record of the digitizer shows an output that blocks from `from_s` after its trigger onwards;
+/// fails with the reason when the line shows nothing of the output.
 fn blocks(ac: &AcPlan, given: &Given, from_s: f64) -> Result<bool, Reason> {
     let all: [_; 2] = given.waveforms()?;
     let [divided, shunt] = all.map(|it| tail(&it, from_s));
@@ -190,8 +190,8 @@ fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Ve
     acts
 }
 
-/// Returns the acts that step the control from 0 V to a level and record the output from the step on. The output must
-/// conduct from `within_s` after the step on.
+/// Returns the acts that step the control from 0 V to a level and record the output, beginning with the step. The
+/// output must conduct from `within_s` after the step onwards.
 fn rising_acts(
     state: &mut State,
     (level_v, within_s): (f64, f64),
@@ -226,7 +226,7 @@ fn recorded(scales: &Scales, channels: &[f64], points: &Points) -> [Act; 2] {
     ]
 }
 
-/// Returns which polarities conduct in the period from `from_s` after the trigger of a record on.
+/// Returns which polarities conduct in the period that begins `from_s` after the trigger of a record.
 fn conducting(ac: &AcPlan, given: &Given, from_s: f64) -> Result<Conducting, NotDelivered> {
     let [divided, clamped] = given.waveforms()?;
     of_period(ac, [&divided, &clamped], from_s).ok_or(NotDelivered(Device::Digitizer))

@@ -28,7 +28,7 @@ const LEAST: f64 = 0.3;
 const DRIFT_S: [f64; 2] = [0.01, 0.2];
 /// Share of its range up to which the channel of the drop follows the output.
 const FOLLOWED: f64 = 0.93;
-/// Share of the peak of the current that both polarities reach at least in a whole wave.
+/// Least share of the peak of the current that both polarities reach in a whole wave.
 const HALF: f64 = 0.2;
 
 /// Returns the acts that record the part in the loop.
@@ -50,11 +50,14 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
     acts
 }
 
-/// The two channels of a record in the loop.
+/// The channels of a record in the loop.
 pub struct Drops<'a> {
-    /// The whole voltage of the output, which a channel for the drop cuts off where the output waits for its voltage.
+    /// Voltage of the output over its whole range, V.
     whole: Channel<'a>,
+    /// Voltage of the output in the finer channel for the drop, V. Where the output waits for its voltage, this channel
+    /// cuts it off.
     volts: Channel<'a>,
+    /// Current of the loop, A.
     ampere: Channel<'a>,
     /// The fitted sine of the current.
     pub current: Mains,
@@ -77,9 +80,9 @@ pub struct OnState {
     pub distortion_v: f64,
     /// Difference of the charges of both half cycles over their sum, and its standard uncertainty from the samples.
     pub unequal: (f64, f64),
-    /// Whole periods behind both.
+    /// Number of whole periods from which `offset_v` and `unequal` are computed.
     pub periods: f64,
-    /// Mean size of the current, A.
+    /// Mean absolute value of the current, A.
     pub mean_a: f64,
     /// Slope resistance of the output, ohm.
     pub ohm: f64,
@@ -136,7 +139,7 @@ impl<'a> Drops<'a> {
         Some(f64::midpoint(plus.at(peak_a), minus.at(peak_a)))
     }
 
-    /// Returns the rms of both polarities.
+    /// Returns the rms drop at the rated current over both polarities, V.
     fn rms_v(&self, between_s: (f64, f64)) -> Option<f64> {
         let (plus, minus) = (self.line(1.0, between_s)?, self.line(-1.0, between_s)?);
         let rms = |line: &DropLine| line.rms(self.rated_peak_a);
@@ -181,9 +184,11 @@ impl<'a> Drops<'a> {
         })
     }
 
-    /// Returns the mean voltage over whole periods, V; the interval at either end counts with its share. The range of the
-    /// channel ends at voltages whose sizes differ by its offset; `most_v` is below both, so that the peaks of both
-    /// polarities, at which the output waits, cancel.
+    /// Returns the mean voltage over whole periods, V; the interval at either end counts with its share.
+    ///
+    /// The channel cuts off the two polarities at voltages whose sizes differ by its offset. This function cuts off
+    /// both at `most_v`, which is below either, so that the peaks of both polarities, at which the output waits,
+    /// cancel.
     fn mean_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> f64 {
         let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
         let at = |it: usize| self.clipped(it, most_v);
@@ -199,9 +204,9 @@ impl<'a> Drops<'a> {
         self.volts.at(index).clamp(-most_v, most_v)
     }
 
-    /// Returns the difference of the charges of both polarities over their sum, and the mean size of the current, A. A mains
-    /// that grows makes the polarity greater that comes second, so the result is the mean of two windows, half a period
-    /// apart.
+    /// Returns the difference of the charges of both polarities over their sum, and the mean absolute value of the
+    /// current, A. While the mains grows, the polarity that comes second has the greater charge; the result is
+    /// therefore the mean of two windows, half a period apart.
     fn unequal(&self, (from_s, to_s): (f64, f64)) -> (f64, f64) {
         let (half_s, period_s) = (self.current.half_s(), 1.0 / self.current.hz);
         let [one, other] = [0.0, half_s].map(|later_s| {
@@ -215,8 +220,8 @@ impl<'a> Drops<'a> {
         (unequal, f64::midpoint(one.1, other.1))
     }
 
-    /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods. The noise of the
-    /// samples of the whole voltage is no distortion.
+    /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods. The noise of
+    /// the samples of the whole voltage is no distortion.
     fn distortion_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> Option<f64> {
         let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
         let samples = (from..to).map(|it| (self.volts.time(it), self.at(it, most_v)));
@@ -241,9 +246,9 @@ impl<'a> Drops<'a> {
         }
     }
 
-    /// Returns the zero of the current with which the output begins to conduct half cycles, s: after the control edge a
-    /// zero-cross part waits up to half a period, in which no current has warmed it. Less than half of a half cycle at
-    /// the beginning, such as that of a part that fires right before a zero, does not count.
+    /// Returns the zero of the current from which on the output conducts half cycles, s. After the control edge a
+    /// zero-cross part waits up to half a period, in which no current warms it. A first piece of less than half of a
+    /// half cycle, such as that of a part that fires right before a zero, does not count.
     fn begins_s(&self) -> Option<f64> {
         let least_a = LEAST * self.current.amplitude();
         let flows = (0..self.ampere.len()).find(|it| self.ampere.at(*it).abs() >= least_a)?;
@@ -253,8 +258,8 @@ impl<'a> Drops<'a> {
         )
     }
 
-    /// Returns how long the current has warmed the part before [`Self::begins_s`], s; below 0 when its first half cycle is
-    /// not whole. A part of a half cycle counts with its charge.
+    /// Returns how long the current has warmed the part before [`Self::begins_s`], s; below 0 when its first half cycle
+    /// is not whole. A piece of a half cycle counts in proportion to its charge.
     fn lead_s(&self) -> Option<f64> {
         let period_s = 1.0 / self.current.hz;
         let to = self.ampere.index(self.begins_s()? + period_s);

@@ -1,8 +1,8 @@
 //! The AC circuits, line and loop: contactors, source, and the records that the stages of an AC part take there.
 //!
 //! A contactor closes only after the mirror contacts of both have shown them open. A stage goes on only when the mirror
-//! contacts show what it has switched; else the runner skips the acts that follow, and [`switched`] ends the test. The loop closes
-//! only after the source has been measured at its low voltage.
+//! contacts show what it has switched; else the runner skips the acts that follow, and [`switched`] ends the test. The
+//! loop closes only after the source has been measured at its low voltage.
 
 pub mod conforms;
 pub mod leakage;
@@ -106,7 +106,8 @@ pub fn close(state: &mut State, to: Position, ac: &AcPlan, points: &Points) -> V
     }
     let is_beside = expected(state.position) == expected(to) && state.position.is_on_mains();
     let mut queries = vec![points.off(Device::SmuIn)];
-    // Beside the line the source of DC parts is away already, and the pulse source may wait there with its train.
+    // Between the two positions of the line, the source of DC parts is disconnected already, and the pulse source may
+    // already hold its train.
     if !is_beside {
         queries.push(points.off(Device::SmuOut));
     }

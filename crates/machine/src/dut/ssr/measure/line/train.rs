@@ -42,7 +42,8 @@ const NEAR_US: f64 = 400.0;
 const FOLLOWED: f64 = 0.85;
 /// Time without voltage that no zero of a live line explains, as a share of half a period.
 const SILENT: f64 = 0.25;
-/// Time in which the line must reach either polarity, in half periods: one, and what it takes to pass [`LOW`] twice.
+/// Time within which a live line reaches both polarities, in half periods: one, and the time that it takes to pass
+/// [`LOW`] twice.
 const ONE_SIGN: f64 = 1.4;
 /// Voltage of the line, as a share of its peak, that a live line exceeds except around its zeros.
 const LOW: f64 = 0.1;
@@ -135,8 +136,8 @@ impl Walk {
     }
 }
 
-/// Returns true when the line has its voltage in the whole record: the voltage of the output and that of the load together
-/// are low at zeros alone, and change their sign. A dead line leaves a constant voltage at the capacitance of the output.
+/// Returns true when the line has its voltage in the whole record: the sum of the voltages of output and load is low
+/// only at its zeros, and changes its sign. A dead line leaves a constant voltage at the capacitance of the output.
 /// `None` when the channels do not fit each other.
 fn lives(ac: &AcPlan, [divided, shunt]: [&Waveform; 2]) -> Option<bool> {
     let output = Channel::of(divided, DIVIDER, 0.0)?;
@@ -217,8 +218,8 @@ fn mark(state: &mut State, walk: &Walk) {
     }
 }
 
-/// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value of all pulses: the mean of
-/// the values that lie below the greatest one by no more than two intervals of the samples explain.
+/// Finds turn-on time, zero-cross voltage and retrigger voltage. Each is the greatest value over all pulses: the mean
+/// of the values that lie within two intervals of the samples of the greatest one.
 fn on_found(state: &mut State, plan: &Plan, ac: &AcPlan, walk: &Walk) {
     let us = Unit::Microsecond;
     let counts =

@@ -10,16 +10,19 @@ pub struct Part {
     pub turn_off_v: f64,
     /// True when the part fires only at a zero of the mains.
     pub zero_cross: bool,
-    /// Voltage at which the part fires first, and at later half cycles.
+    /// Voltage at which the part fires first, V.
     pub fires_v: f64,
+    /// Voltage at which the part fires at later half cycles, V.
     pub again_v: f64,
-    /// Delay between control edge and light, at both edges, s.
+    /// Delay between the rising control edge and the light, s.
     pub delay_s: f64,
+    /// Delay between the falling control edge and the end of the light, s, when it is longer than `delay_s`; else 0.
     pub late_off_s: f64,
     pub threshold_v: f64,
     pub ohm: f64,
-    /// Polarity that never conducts, 0 for none; the next field is one that always conducts.
+    /// Polarity that never conducts; 0 for none.
     pub dead: f64,
+    /// Polarity that always conducts; 0 for none, 2 for both.
     pub shorted: f64,
     pub leak_s: f64,
     pub leak_f: f64,
@@ -27,9 +30,11 @@ pub struct Part {
     pub sticks: bool,
     /// Rise of the drop from cold to warm, V.
     pub rise_v: f64,
-    /// Gains and delay of the channels, zero of the clamped one.
+    /// Gains of the channels.
     pub gains: [f64; 3],
+    /// Delay of the shunt channel, s.
     pub delay_of_shunt_s: f64,
+    /// Zero of the clamped channel, V.
     pub zero_v: f64,
     pub stray_f: f64,
     /// Inputs that the fixture never reports as on.
