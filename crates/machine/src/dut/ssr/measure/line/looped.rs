@@ -220,8 +220,8 @@ impl<'a> Drops<'a> {
         (unequal, f64::midpoint(one.1, other.1))
     }
 
-    /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods. The noise of
-    /// the samples of the whole voltage is no distortion.
+    /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods, V. It reads
+    /// the finer channel where that follows the output, because noise counts as distortion.
     fn distortion_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> Option<f64> {
         let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
         let samples = (from..to).map(|it| (self.volts.time(it), self.at(it, most_v)));

@@ -22,7 +22,7 @@ pub struct Part {
     pub ohm: f64,
     /// Polarity that never conducts; 0 for none.
     pub dead: f64,
-    /// Polarity that always conducts; 0 for none, 2 for both.
+    /// Polarity that always conducts on the mains; 0 for none. Above 1.5 the short check finds a short, too.
     pub shorted: f64,
     pub leak_s: f64,
     pub leak_f: f64,
