@@ -658,6 +658,7 @@ refusal-lot_completed = lot { $lot } is complete; begin another lot, agree to a 
 refusal-nothing_to_retest = lot { $lot } has no run whose parts could be tested again
 refusal-recipe_faulty = { $said }
 refusal-controller_ended = the controller has ended or does not answer; nothing was done
+refusal-orders_waiting = { $count } orders wait for the controller already; give this one again in a moment
 
 ## Remarks on completed orders
 

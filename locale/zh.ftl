@@ -629,6 +629,7 @@ refusal-lot_completed = 批次 { $lot } 已完成；请另开批次、同意复�
 refusal-nothing_to_retest = 批次 { $lot } 没有可复测的记录
 refusal-recipe_faulty = 配方有误：请工程师运行 `relayrig config check`
 refusal-controller_ended = 控制器已结束或无应答；未执行任何操作
+refusal-orders_waiting = 已有 { $count } 条命令等待控制器处理；请稍后再下达本命令
 
 ## Remarks on orders that are done
 

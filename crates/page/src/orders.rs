@@ -18,6 +18,7 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use texts::Message;
+use tokio::sync::mpsc::error::TrySendError;
 use tokio::sync::oneshot;
 use utoipa::ToSchema;
 
@@ -47,12 +48,8 @@ pub(super) async fn order(
         return Err(refused);
     }
     match send(&app, order, by).await {
-        None => Err(ApiError::NotNow {
-            order: word,
-            why: Message::new("refusal", "controller_ended"),
-        }),
-        Some(Err(why)) => Err(ApiError::NotNow { order: word, why }),
-        Some(Ok(remark)) => Ok(Json(Accepted {
+        Err(why) => Err(ApiError::NotNow { order: word, why }),
+        Ok(remark) => Ok(Json(Accepted {
             order: word,
             remark,
         })),
@@ -82,12 +79,17 @@ pub(super) fn describe_roles(schemas: &mut BTreeMap<String, Value>) {
     }
 }
 
-/// Sends the order and returns the answer of the cycle; `None` when the controller has ended or its queue is full.
-async fn send(app: &AppState, order: Order, by: By) -> Option<Answer> {
+/// Sends the order and returns the answer of the cycle. Refuses the order when [`WAITING`] others wait, and when the
+/// controller has ended.
+async fn send(app: &AppState, order: Order, by: By) -> Answer {
+    let ended = || Message::new("refusal", "controller_ended");
     let (answer, answered) = oneshot::channel();
     let request = OrderRequest::new(order, by, move |it| drop(answer.send(it)));
-    app.shared.orders.try_send(request).ok()?;
-    answered.await.ok()
+    app.shared.orders.try_send(request).map_err(|it| match it {
+        TrySendError::Full(_) => Message::new("refusal", "orders_waiting").with("count", WAITING),
+        TrySendError::Closed(_) => ended(),
+    })?;
+    answered.await.unwrap_or_else(|_| Err(ended()))
 }
 
 /// Sends a denied order to the audit; the order is lost when the controller has ended or its queue is full.

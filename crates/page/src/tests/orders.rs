@@ -91,6 +91,22 @@ async fn forbidden_orders_reach_the_audit() {
 }
 
 #[tokio::test]
+async fn a_full_queue_is_not_an_ended_controller() {
+    let fixture = Fixture::new();
+    let waiting = fixture.orders.reserve_many(WAITING).await.unwrap();
+    let full = fixture.order(r#"{"order":"stop"}"#).await.refused(409);
+    assert!(full.starts_with("stop: 16 orders wait"), "{full}");
+    drop(waiting);
+    fixture.controller.abort();
+    fixture.orders.closed().await;
+    let ended = fixture.order(r#"{"order":"stop"}"#).await.refused(409);
+    assert!(
+        ended.starts_with("stop: the controller has ended"),
+        "{ended}"
+    );
+}
+
+#[tokio::test]
 async fn a_malformed_order_is_refused() {
     let fixture = Fixture::new();
     for body in [
