@@ -14,7 +14,8 @@ function standing(alarm) {
   head.append(make("b", (alarm.first_out ? "▲ " : "△ ") + alarm.code), make("span", inLanguage(alarm, "text")));
   inLanguage(alarm, "help").forEach((text, place) => {
     const pair = make("div");
-    pair.append(make("dt", word(["alarms-cause", "alarms-consequence", "alarms-action"][place])), make("dd", text || NONE));
+    const name = word(["alarms-cause", "alarms-consequence", "alarms-action"][place]);
+    pair.append(make("dt", name), showMarked(make("dd"), text || NONE));
     help.append(pair);
   });
   const state = [wordOr("alarms-state-" + alarm.state, alarm.state), wordOr("alarms-stops-" + alarm.stops, alarm.stops),

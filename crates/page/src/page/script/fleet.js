@@ -76,7 +76,7 @@ function showShifts() {
   // The newest shift first, rig by rig within a shift.
   lines.sort((one, other) => (one[1].from < other[1].from ? 1 : one[1].from > other[1].from ? -1 : 0));
   at("shifts").replaceChildren(...(lines.length ? lines.map(([rig, it]) => row(rigName(rig), it.day, it.shift,
-    integerText(it.parts), firstPass(it), integerText(it.retest_pass))) : [row(word("rigs-no_shifts"))]));
+    integerText(it.parts), firstPass(it), integerText(it.retest_pass))) : [row(showMarked(make("span"), word("rigs-no_shifts")))]));
 }
 
 function showReferences() {

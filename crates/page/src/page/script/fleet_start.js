@@ -25,7 +25,7 @@ function showLink() {
   at("trouble").hidden = !trouble;
   if (!trouble) return;
   const [what, more] = at("trouble").children;
-  what.firstElementChild.textContent = word("rigs_remedy-" + trouble.remedy);
+  showMarked(what.firstElementChild, word("rigs_remedy-" + trouble.remedy));
   what.lastElementChild.textContent = word("rigs-trouble_since") + " " + clock(trouble.since);
   more.textContent = trouble.text;
 }

@@ -51,6 +51,12 @@ function make(tag, text, name) {
   return element;
 }
 
+// Shows a text in the element; parts between backticks, such as commands and keys, as code.
+function showMarked(element, text) {
+  element.replaceChildren(...text.split("`").map((part, place) => (place % 2 ? make("code", part) : part)));
+  return element;
+}
+
 const row = (...cells) => {
   const element = make("tr");
   element.append(...cells.map((it) => {
