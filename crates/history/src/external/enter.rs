@@ -9,6 +9,7 @@ use machine::dut::external::{ExternalDemands, ExternalVerdict};
 use machine::form::one_of;
 use machine::gauge::{Limit, Rule};
 use rusqlite::{OptionalExtension, Transaction, params};
+use std::collections::HashSet;
 
 const DOING: &str = "entering results from outside of the rig";
 
@@ -198,25 +199,42 @@ fn enter(tx: &Transaction<'_>, all: &EnteredResults<'_>, lot: &Lot) -> Result<Ch
         let (lot, results) = (all.lot.to_owned(), before.unsigned_abs());
         return Ok(Err(ResultRefusal::Again { lot, results }));
     }
-    let mut entered = Entered::default();
+    let (mut entered, mut seen) = (Entered::default(), HashSet::new());
     for result in all.results {
-        let limit = match check(all, lot, result) {
-            Ok(limit) => limit,
+        match one(tx, all, (lot, result), &mut seen)? {
+            Ok(ExternalVerdict::Pass) => entered.pass += 1,
+            Ok(ExternalVerdict::Fail) => entered.fail += 1,
+            Ok(ExternalVerdict::Undecided) => entered.undecided += 1,
             Err(refused) => return Ok(Err(refused)),
-        };
-        let sample = match found(tx, lot, result)? {
-            Ok(sample) => sample,
-            Err(refused) => return Ok(Err(refused)),
-        };
-        let verdict = lot.demands.judge(result.value, result.u, &limit);
-        insert(tx, all, (lot, result), (sample, limit, verdict))?;
-        match verdict {
-            ExternalVerdict::Pass => entered.pass += 1,
-            ExternalVerdict::Fail => entered.fail += 1,
-            ExternalVerdict::Undecided => entered.undecided += 1,
         }
     }
     Ok(Ok(entered))
+}
+
+/// Enters one result; `seen` has the samples and quantities of those before.
+fn one(
+    tx: &Transaction<'_>,
+    all: &EnteredResults<'_>,
+    (lot, result): (&Lot, &NewResult),
+    seen: &mut HashSet<(Named, External)>,
+) -> Result<Checked<ExternalVerdict>> {
+    let limit = match check(all, lot, result) {
+        Ok(limit) => limit,
+        Err(refused) => return Ok(Err(refused)),
+    };
+    let sample = match found(tx, lot, result)? {
+        Ok(sample) => sample,
+        Err(refused) => return Ok(Err(refused)),
+    };
+    // Otherwise a good line could hide a bad one of the same file.
+    if !seen.insert((sample.clone(), result.key)) {
+        let expected = "each quantity of a sample once in a file";
+        let refused = ResultRefusal::wrong(result.line, "key", result.key, expected);
+        return Ok(Err(refused));
+    }
+    let verdict = lot.demands.judge(result.value, result.u, &limit);
+    insert(tx, all, (lot, result), (sample, limit, verdict))?;
+    Ok(Ok(verdict))
 }
 
 /// Checks key, value, uncertainty and time; returns the limit.

@@ -13,6 +13,7 @@ use crate::{
     Alarm, AlarmState, Batch, BatchAir, BatchSocket, LotSummary, LotYield, Measurement, Part,
     PromptAnswer, Reopening, Shelf, Yield,
 };
+use crate::{ExternalResult, ExternalStanding};
 use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};

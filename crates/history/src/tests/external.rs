@@ -150,6 +150,11 @@ fn a_bad_line_enters_no_result() {
             "line 3: found 2 fields, expected 5 as in the header",
         ),
         (
+            head,
+            "A-2,r_iso_ohm,5e8,1e7,",
+            "line 3, column key: found \"r_iso_ohm\", expected each quantity of a sample once in a file",
+        ),
+        (
             whole,
             "A-1,,1,r_iso_ohm,2e9,,1,",
             "line 3, column seq: found \"1\", expected nothing beside a serial number",

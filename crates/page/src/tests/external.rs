@@ -37,7 +37,7 @@ fn fixture() -> Fixture {
 #[tokio::test]
 async fn an_engineer_enters_a_result_that_all_read() {
     let fixture = fixture();
-    let register = fixture.register();
+    let mut register = fixture.register();
     register.add("zhao", Role::Engineer, PASSWORD, 0).unwrap();
     let now_us = jiff::Timestamp::now().as_microsecond();
     let [zhao, li] = ["zhao", "li"].map(|who| register.open_session(who, now_us).unwrap());
@@ -80,11 +80,8 @@ async fn an_engineer_enters_a_result_that_all_read() {
         let refused = fixture.post(path, Some(&zhao), body).await.refused(status);
         assert!(refused.contains(said), "{refused}");
     }
-    let lots = |fixture: &Fixture| fixture.get("/api/lots");
-    assert_eq!(
-        lots(&fixture).await.json()[0]["external"]["missing"][0],
-        "r_iso_ohm"
-    );
+    let lots = fixture.get("/api/lots").await.json();
+    assert_eq!(lots[0]["external"]["missing"][0], "r_iso_ohm");
     let bad = fixture.post(path, Some(&zhao), typed(5e8)).await.json();
     assert_eq!(
         (&bad["standing"]["acceptable"], &bad["standing"]["fail"]),
