@@ -766,7 +766,7 @@ characteristic-contact_resistance_mohm = 接触电阻
 characteristic-creep_k = 蠕动宽度
 characteristic-chatter_edges = 抖动（多余跳变数）
 characteristic-repeatability_k = 重复性
-external-dv_dt_v_us = 静态 dv/dt
+external-dv_dt_v_us = 静态电压上升率
 external-r_iso_ohm = 绝缘电阻
 external-dwv_ua = 耐压漏电流
 
@@ -1816,7 +1816,7 @@ paper-drawn_up_date = 编制（日期）
 paper-checked_date = 审核（日期）
 paper-countersigned_date = 会签（日期）
 paper-not_tested = 未测项目：绝缘电阻、介质耐压、电气寿命与机械寿命。
-paper-not_tested_by_rig = 本测试机未测项目：绝缘电阻、介质耐压、静态 dv/dt、电气寿命与机械寿命。
+paper-not_tested_by_rig = 本测试机未测项目：绝缘电阻、介质耐压、静态电压上升率、电气寿命与机械寿命。
 paper-external = 机外测试结果
 paper-external_note = 由所列人员用其他设备在样品上测得并录入，按该批的配方判定。已被取代的结果不计。
 paper-external_acceptable = 机外测试结果：可接收（{ $pass } 项合格）
