@@ -796,6 +796,9 @@ characteristic-contact_resistance_mohm = Contact resistance
 characteristic-creep_k = Creep
 characteristic-chatter_edges = Chatter (extra edges)
 characteristic-repeatability_k = Repeatability
+external-dv_dt_v_us = Static dv/dt
+external-r_iso_ohm = Isolation resistance
+external-dwv_ua = Dielectric withstand leakage
 
 ## The page
 
@@ -937,6 +940,17 @@ lots-about-release_lot = The lot may be run again.
 lots-about-close_lot = The lot ends here. Parts inside are finished first.
 lots-about-reopen_lot = The complete lot may be run again, with the same recipe. The report shows name and reason.
 lots-reopened = reopened
+x-title = Results from outside of the rig
+x-open = External results
+x-sample = Sample
+x-seq = Part no.
+x-enter = Enter result
+x-entered = The result is entered.
+x-note = Name the sample by its serial number or part number; leave both empty for a result of the lot. U: expanded uncertainty (k = 2). A later result on the same sample supersedes the earlier one; both stay in the record.
+x-superseded = superseded
+x-acceptable = External results acceptable
+x-not_acceptable = NOT ACCEPTABLE by external results
+x-missing = missing:
 lot_state-open = open
 lot_state-running = running
 lot_state-held = HELD
@@ -952,6 +966,7 @@ order-unsuspend = go on after waiting
 order-revise = change recipe
 order-new_recipe = new recipe
 order-approve = approve recipe
+order-external_result = enter external result
 order-mode = mode
 order-jog = jog
 page-alarms = Alarms
@@ -1240,6 +1255,7 @@ r-no = no
 r-about = Recipe
 r-part = The part
 r-limits = Limits, inclusive; an empty side is not judged
+r-external = Limits of results from outside of the rig
 r-decision = Decision
 r-test = Test
 r-strategy = Measuring strategy
@@ -1284,6 +1300,7 @@ verdict-pass = PASS
 verdict-fail = FAIL
 verdict-void = VOID
 verdict-unjudged = UNJUDGED
+verdict-undecided = UNDECIDED
 
 ## Bins
 
@@ -1829,6 +1846,15 @@ paper-drawn_up_date = Drawn up (date)
 paper-checked_date = Checked (date)
 paper-countersigned_date = Countersigned (date)
 paper-not_tested = Not tested: insulation resistance, dielectric strength, electrical and mechanical endurance.
+paper-not_tested_by_rig = Not tested by the rig: insulation resistance, dielectric strength, static dv/dt, electrical and mechanical endurance.
+paper-external = Results from outside of the rig
+paper-external_note = Measured on samples with other equipment and entered by the person named; judged by the recipe of the lot. A superseded result does not count.
+paper-external_acceptable = Results from outside of the rig: acceptable ({ $pass } passed)
+paper-external_not_acceptable = Results from outside of the rig: lot NOT ACCEPTABLE ({ $fail } failed, { $undecided } undecided, missing: { $missing })
+paper-sample = Sample
+paper-measured_at = Measured
+paper-entered_by = Entered by
+paper-superseded = superseded
 paper-reasons = Reasons of rejects: parts, share of the parts tested, running share of the reasons
 paper-rejects = Rejects
 paper-runs_part = Run / part
@@ -1858,6 +1884,7 @@ paper-bin_share = bin { $bin }
 paper-of_characteristic = { $name }: { $text }
 paper_verdict-pass = pass
 paper_verdict-fail = fail
+paper_verdict-undecided = undecided
 paper_verdict-void = void
 paper_verdict-unjudged = imported without verdict
 

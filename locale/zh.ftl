@@ -767,6 +767,9 @@ characteristic-contact_resistance_mohm = 接触电阻
 characteristic-creep_k = 蠕动宽度
 characteristic-chatter_edges = 抖动（多余跳变数）
 characteristic-repeatability_k = 重复性
+external-dv_dt_v_us = 静态电压上升率
+external-r_iso_ohm = 绝缘电阻
+external-dwv_ua = 耐压漏电流
 
 ## The page
 
@@ -908,6 +911,17 @@ lots-about-release_lot = 该批次可以再次运行。
 lots-about-close_lot = 批次到此结束，机内工件先测完。
 lots-about-reopen_lot = 已完成的批次可用原配方再次运行，报告载明姓名和原因。
 lots-reopened = 重新打开
+x-title = 机外测试结果
+x-open = 机外结果
+x-sample = 样品
+x-seq = 工件号
+x-enter = 录入结果
+x-entered = 结果已录入。
+x-note = 用序列号或工件号指明样品；两者都空表示整批的结果。U：扩展不确定度（k = 2）。同一样品的后一结果取代前一结果，两者都保留在记录中。
+x-superseded = 已被取代
+x-acceptable = 机外测试结果可接收
+x-not_acceptable = 按机外测试结果不可接收
+x-missing = 缺：
 lot_state-open = 未完成
 lot_state-running = 进行中
 lot_state-held = 已冻结
@@ -923,6 +937,7 @@ order-unsuspend = 结束等待
 order-revise = 修改配方
 order-new_recipe = 新建配方
 order-approve = 批准配方
+order-external_result = 录入机外结果
 order-mode = 模式
 order-jog = 点动
 page-alarms = 报警
@@ -1211,6 +1226,7 @@ r-no = 否
 r-about = 配方
 r-part = 工件
 r-limits = 限值（含端点）；空白一侧不判定
+r-external = 机外测试结果的限值
 r-decision = 判定
 r-test = 测试
 r-strategy = 测量方法
@@ -1255,6 +1271,7 @@ verdict-pass = 合格
 verdict-fail = 不合格
 verdict-void = 无效
 verdict-unjudged = 未判定
+verdict-undecided = 未定
 
 ## Bins
 
@@ -1800,6 +1817,15 @@ paper-drawn_up_date = 编制（日期）
 paper-checked_date = 审核（日期）
 paper-countersigned_date = 会签（日期）
 paper-not_tested = 未测项目：绝缘电阻、介质耐压、电气寿命与机械寿命。
+paper-not_tested_by_rig = 本测试机未测项目：绝缘电阻、介质耐压、静态电压上升率、电气寿命与机械寿命。
+paper-external = 机外测试结果
+paper-external_note = 由所列人员用其他设备在样品上测得并录入，按该批的配方判定。已被取代的结果不计。
+paper-external_acceptable = 机外测试结果：可接收（{ $pass } 项合格）
+paper-external_not_acceptable = 机外测试结果：该批不可接收（{ $fail } 项不合格，{ $undecided } 项未定，缺：{ $missing }）
+paper-sample = 样品
+paper-measured_at = 测量时间
+paper-entered_by = 录入人
+paper-superseded = 已被取代
 paper-reasons = 不合格原因：件数、占受检件数比例、累计占原因比例
 paper-rejects = 不合格件
 paper-runs_part = 运行 / 件号
@@ -1829,6 +1855,7 @@ paper-bin_share = 料箱：{ $bin }
 paper-of_characteristic = { $name }：{ $text }
 paper_verdict-pass = 合格
 paper_verdict-fail = 不合格
+paper_verdict-undecided = 未定
 paper_verdict-void = 无效
 paper_verdict-unjudged = 导入未判定
 

@@ -21,6 +21,7 @@ mod query;
 mod rejudge;
 mod report;
 mod restore;
+mod results;
 mod shifts;
 mod show;
 mod spc;
@@ -122,6 +123,17 @@ enum Command {
         after_help = "Example: relayrig history import old.csv --lot 2019-07 --map Uop=operate_voltage_v"
     )]
     Import(import::ImportArgs),
+    /// Results of a lot that were measured outside of the rig
+    #[command(after_help = "Example: relayrig history results A --json")]
+    Results(results::ResultsArgs),
+    /// Enter results that were measured outside of the rig: a file with columns key and value, optionally serial, run, seq,
+    /// unit, u, at
+    #[command(
+        after_help = "Example: relayrig history import-results hipot.csv --lot A --by zhao\n\n\
+        hipot.csv:\n  serial,key,value,u,at\n  A-000017,r_iso_ohm,4.2e10,4e9,2026-11-22T08:00\n  \
+        A-000017,dwv_ua,3.1,0.2,2026-11-22T08:05"
+    )]
+    ImportResults(results::ImportResultsArgs),
     /// Judge a lot by another recipe; writes nothing
     #[command(after_help = "Example: relayrig history rejudge --lot A --recipe jzc-22f-012")]
     Rejudge(rejudge::RejudgeArgs),
@@ -176,6 +188,7 @@ fn dispatch(files: &Files, from: &from::FromArgs, command: Command) -> anyhow::R
     let archive = || from.open(files);
     match command {
         Command::Import(args) => return import::run(db, &args),
+        Command::ImportResults(args) => return results::import(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),
         Command::Check => return check(db),
         Command::Restore(args) => return restore::run(files, &args),
@@ -193,6 +206,7 @@ fn dispatch(files: &Files, from: &from::FromArgs, command: Command) -> anyhow::R
         Command::Shifts(args) => shifts::run(config, &archive()?, &args)?,
         Command::Report(args) => report::run(&archive()?, &args)?,
         Command::Rejudge(args) => rejudge::run(config, &archive()?, &args)?,
+        Command::Results(args) => results::run(&archive()?, &args)?,
         Command::Export(args) => export::run(&archive()?, from.file(db), &args)?,
         Command::Backup(args) => backup::run(files, &args)?,
     }
@@ -205,6 +219,7 @@ impl Command {
     const fn of_file(&self) -> Option<&'static str> {
         match self {
             Self::Import(_) => Some("import"),
+            Self::ImportResults(_) => Some("import-results"),
             Self::Generate(_) => Some("generate"),
             Self::Check => Some("check"),
             Self::Restore(_) => Some("restore"),
@@ -223,6 +238,7 @@ impl Command {
             | Self::Shifts(_)
             | Self::Report(_)
             | Self::Rejudge(_)
+            | Self::Results(_)
             | Self::Export(_) => None,
         }
     }

@@ -7,6 +7,7 @@ use super::person;
 use anyhow::{Context, anyhow};
 use app::exit::Exit;
 use app::lot_decision::{self, AboutLot};
+use history::report::external_sentence;
 use history::{Archive, Decision, Filter};
 use machine::view::Order;
 use serde_json::json;
@@ -125,7 +126,8 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
     let reopenings = archive.reopenings(lot)?;
     let mut out = std::io::stdout().lock();
     if as_json {
-        let it = json!({"lot": lot, "standing": standing, "yield": counts, "runs": runs, "golden_checks": checks, "reopenings": reopenings});
+        let it = json!({"lot": lot, "standing": standing, "yield": counts, "runs": runs, "golden_checks": checks, "reopenings": reopenings,
+            "external": archive.external_standing(lot)?});
         writeln!(out, "{it}")?;
         return Ok(());
     }
@@ -174,6 +176,9 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         percent(counts.finally()),
         counts.suspect
     )?;
+    if let Some(it) = archive.external_standing(lot)? {
+        writeln!(out, "{}", external_sentence(Lang::En, &it))?;
+    }
     for it in &checks {
         let outcome = if it.passed { "good" } else { "FAILED" };
         writeln!(

@@ -297,3 +297,89 @@ fn ramps_find_the_thresholds_within_their_uncertainty() {
     }
     assert!(found >= 60 && beyond * 10 <= found, "{beyond} of {found}");
 }
+
+/// Results of parts 1 and 2 of a lot with serial numbers, as a hipot tester and a pulse generator give them.
+const MEASURED: &str = "serial,key,value,unit,u,at\n\
+    X-000001,dv_dt_v_us,620,V/us,30,2026-01-02T08:00:00+08:00\n\
+    X-000001,r_iso_ohm,4.2e10,ohm,4e9,2026-01-02T08:05:00+08:00\n\
+    X-000002,r_iso_ohm,6e8,ohm,6e7,2026-01-02T08:10:00+08:00\n";
+
+#[test]
+fn a_lot_waits_for_good_results_from_outside() {
+    let workshop = Workshop::new("ssr-external");
+    let recipe = "config/rigs/ssr/recipes/ssr-dc-60v-3a.toml";
+    let demand =
+        "[external]\ndv_dt_v_us = { low = 500.0 }\nr_iso_ohm = { low = 1e9 }\n\n[decision]";
+    workshop.change(recipe, "[decision]", demand);
+    let serials = "[serial]\nsource = \"counted\"\ntemplate = \"{lot}-{number:06}\"\n";
+    workshop.write("config/rigs/ssr/lot.toml", serials);
+    workshop
+        .run(&format!("{RUN} --lot X --count 3 --seed 1"))
+        .with_status(0);
+    let shown = || workshop.run("history show X").with_status(0).stdout;
+    let report = || {
+        workshop
+            .run("history report --lot X --lang en")
+            .with_status(0)
+            .stdout
+    };
+    assert!(shown().contains("NOT ACCEPTABLE (0 failed, 0 undecided, missing: Static dv/dt"));
+    assert!(report().contains("NOT ACCEPTABLE"));
+
+    workshop.write("measured.csv", MEASURED);
+    let import = "history import-results measured.csv --lot X --by zhao";
+    let said = workshop.run(import).with_status(0);
+    assert!(
+        said.stderr
+            .contains("2 passed, 1 failed, 0 undecided, into lot \"X\""),
+        "{said}"
+    );
+    assert!(said.stdout.contains("NOT ACCEPTABLE (1 failed"), "{said}");
+    let again = workshop.run(import).with_status(2);
+    assert!(
+        again
+            .stderr
+            .contains("measured.csv: this very file is in lot \"X\" already, with 3 results"),
+        "{again}"
+    );
+    workshop.write("bad.csv", &MEASURED.replace("6e8", "6e8 ohm"));
+    let bad = workshop
+        .run(&import.replace("measured", "bad"))
+        .with_status(2);
+    let named = "bad.csv: line 4, column value: found \"6e8 ohm\", expected a finite number";
+    assert!(bad.stderr.contains(named), "{bad}");
+    assert_eq!(workshop.count("SELECT count(*) FROM external_result"), 3);
+
+    let certificate = "history report --lot X --part 2 --lang en";
+    assert!(workshop.run(certificate).stdout.contains("Test record"));
+    workshop.write(
+        "repaired.csv",
+        "serial,key,value,u\nX-000002,r_iso_ohm,3.1e10,3e9\n",
+    );
+    workshop
+        .run(&import.replace("measured", "repaired"))
+        .with_status(0);
+    assert!(shown().contains("acceptable (3 passed)") && report().contains("superseded"));
+    assert!(
+        workshop
+            .run(certificate)
+            .stdout
+            .contains("Test certificate")
+    );
+    let results = workshop
+        .run("history results X --json")
+        .with_status(0)
+        .objects();
+    assert_eq!(
+        (results.len(), &results[2]["superseded"]),
+        (4, &Value::Bool(true))
+    );
+    let exported = workshop.run("history export --lot X").with_status(0).stdout;
+    assert!(
+        exported
+            .lines()
+            .nth(2)
+            .is_some_and(|it| it.ends_with("31000000000,3000000000,pass")),
+        "{exported}"
+    );
+}

@@ -42,7 +42,7 @@ const PARTS: &str = "SELECT it.id, it.history_id, it.run_id, it.kind, it.seq, it
     WHERE true";
 
 /// Every table of the file that questions name. Lots of several rigs with one name count as one lot.
-const TABLES: [(&str, Rows); 17] = [
+const TABLES: [(&str, Rows); 18] = [
     ("parameter", Common("SELECT id, key, meaning FROM relayrig.parameter")),
     ("recipe", Common("SELECT hash AS id, hash, name, body, first_used_us FROM relayrig.recipe")),
     ("lot", OfRigs("SELECT lot AS id, lot AS name, min(opened_at_us) AS first_opened_us FROM relayrig.run WHERE true",
@@ -79,6 +79,13 @@ const TABLES: [(&str, Rows); 17] = [
         nullif(body -> 'refusal', 'null') AS refusal")),
     ("reopening", Events("row_id AS id, body ->> 'lot' AS lot_id, (body ->> 'at_us')::bigint AS at_us,
         body ->> 'who' AS who, body ->> 'why' AS why")),
+    ("external_result", Events("row_id AS id, body ->> 'lot' AS lot_id, body ->> 'serial' AS serial,
+        (body ->> 'run')::bigint AS run, (body ->> 'seq')::bigint AS seq, body ->> 'key' AS key,
+        (body ->> 'value')::double precision AS value, (body ->> 'uncertainty')::double precision AS uncertainty,
+        (body ->> 'low')::double precision AS low, (body ->> 'high')::double precision AS high,
+        body ->> 'verdict' AS verdict, body ->> 'recipe_hash' AS recipe_hash, body ->> 'who' AS who,
+        (body ->> 'measured_at_us')::bigint AS measured_at_us, (body ->> 'entered_at_us')::bigint AS entered_at_us,
+        body ->> 'file_hash' AS file_hash, (body ->> 'line')::bigint AS line")),
 ];
 
 /// Clauses of SQLite that PostgreSQL does not know, each with its replacement.

@@ -204,6 +204,7 @@ fn found_in(row: &Row<'_>) -> Read<Found> {
         uncertainty: serde_json::Map::new(),
         measurements: Vec::new(),
         curves: Vec::new(),
+        external: Vec::new(),
         row: row.get(0)?,
     };
     Ok(Found {

@@ -1,13 +1,20 @@
 //! Columns of a part in CSV, spreadsheets and on the page.
 //!
-//! The order is: [`COLUMNS`], then the value of each parameter, then the expanded uncertainty of each parameter.
+//! The order is: [`COLUMNS`], then the value of each parameter, then the expanded uncertainty of each parameter,
+//! then the results from outside of the rig ([`external_header`]).
 //! `history import` reads the same names.
 
 use super::report::parameter;
 use super::{Moment, Part};
+use machine::dut::External;
 use std::borrow::Cow;
 use std::fmt;
 use texts::Lang;
+
+/// Prefix of the columns that hold uncertainties.
+pub(super) const UNCERTAINTY: &str = "uncertainty ";
+/// Prefix of the columns that hold verdicts on results from outside of the rig.
+pub(super) const VERDICT: &str = "verdict ";
 
 /// Content of a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +70,7 @@ pub const COLUMNS: [Column; 13] = [
 /// Returns the names of all columns.
 pub fn header(parameters: &[String]) -> Vec<String> {
     let fixed = COLUMNS.iter().map(|column| column.name.to_owned());
-    let doubts = parameters.iter().map(|key| format!("uncertainty {key}"));
+    let doubts = parameters.iter().map(|key| format!("{UNCERTAINTY}{key}"));
     fixed
         .chain(parameters.iter().cloned())
         .chain(doubts)
@@ -84,6 +91,31 @@ pub fn texts_in(part: &Part, lang: Lang) -> impl Iterator<Item = Cell<'_>> {
     COLUMNS.iter().map(move |column| match column.told {
         Some(told) => Cell::Text(Cow::Owned(told(part, lang))),
         None => (column.of)(part),
+    })
+}
+
+/// Returns the names of the columns of results from outside of the rig: value, uncertainty and verdict of each.
+pub fn external_header(keys: &[External]) -> impl Iterator<Item = String> + '_ {
+    let of = |key: &External| {
+        [
+            key.to_string(),
+            format!("{UNCERTAINTY}{key}"),
+            format!("{VERDICT}{key}"),
+        ]
+    };
+    keys.iter().flat_map(of)
+}
+
+/// Returns the cells of a part in the order of [`external_header`].
+pub fn external<'a>(part: &'a Part, keys: &'a [External]) -> impl Iterator<Item = Cell<'a>> {
+    keys.iter().flat_map(|key| {
+        let mut counting = part.external.iter().filter(|it| !it.superseded);
+        let found = counting.find(|it| it.key == key.key());
+        [
+            number(found.map(|it| it.value)),
+            number(found.and_then(|it| it.uncertainty)),
+            found.map_or(Cell::Empty, |it| text(it.verdict.name())),
+        ]
     })
 }
 

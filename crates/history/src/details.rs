@@ -6,7 +6,7 @@ use super::source::{Dialect, Read};
 use super::{Archive, Measurement, Moment, Part, Sample};
 use machine::dut::Reason;
 use rusqlite::types::Value;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Values of all attempts; [`of_parts`] adds the condition that selects parts, and the order.
 pub(super) const VALUES: &str =
@@ -62,6 +62,8 @@ impl Archive {
         let parts: Vec<&Part> = found.iter().map(|it| &it.part).collect();
         let mut values = self.values_of(&parts)?;
         let mut reasons = self.reasons_of(&parts)?;
+        let lots: BTreeSet<&str> = runs.values().map(|(lot, ..)| lot.as_str()).collect();
+        let external = self.results_of(lots)?;
         let complete = |Found { mut part, run }: Found| {
             if let Some((lot, number, recipe, rig)) = runs.get(&run) {
                 part.lot.clone_from(lot);
@@ -76,6 +78,10 @@ impl Archive {
                 known.unwrap_or_else(|| Reason::unclassified(text))
             };
             part.reason_codes = part.reasons.iter().map(code).collect();
+            let own = external
+                .iter()
+                .filter(|it| it.lot == part.lot && it.is_on(&part));
+            part.external = own.cloned().collect();
             part
         };
         Ok(found.into_iter().map(complete).collect())

@@ -5,10 +5,11 @@
 //! `uncertainty ...`), so that it takes an exported file. The import refuses any other unknown column, because a
 //! misspelt key would lose its values unnoticed.
 
+use super::columns::{UNCERTAINTY, VERDICT};
 use super::csv::{self, CsvError, Record};
 use super::inquiry::checks::VERDICTS;
 use super::{MeasurementRecord, Moment, PartRecord};
-use machine::dut::Reason;
+use machine::dut::{External, Reason};
 
 /// Columns of an export that an import ignores.
 const IGNORED: [&str; 9] = [
@@ -22,8 +23,6 @@ const IGNORED: [&str; 9] = [
     "test_s",
     "cycle_s",
 ];
-/// Prefix of the columns that hold uncertainties in an export.
-const UNCERTAINTY: &str = "uncertainty ";
 
 /// One row of the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,7 +124,8 @@ pub fn ignored_columns(records: &[Record]) -> Vec<String> {
 
 /// Returns true for a column that only an export writes.
 fn is_ignored(name: &str) -> bool {
-    IGNORED.contains(&name) || name.starts_with(UNCERTAINTY)
+    let is_external = || External::from_key(name).is_some() || name.starts_with(VERDICT);
+    IGNORED.contains(&name) || name.starts_with(UNCERTAINTY) || is_external()
 }
 
 fn row(record: &Record, columns: &[Column], names: &[String]) -> Result<ImportRow, ImportError> {

@@ -12,6 +12,8 @@
 //!   ([`Store::prune`]).
 //! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]); a batch keeps the curves of its
 //!   chamber ([`Batch`]).
+//! - Results that a plant measures outside of the rig stand beside the parts ([`ExternalResult`]); a later one supersedes
+//!   an earlier one, which stays.
 //! - A plan for tooling keeps its steps with the persons who did them ([`tooling`]).
 //! - A file belongs to one rig, real or simulated: its first run marks it ([`check_rig`]).
 //! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`,
@@ -50,6 +52,7 @@ mod decision;
 mod details;
 mod error;
 mod examine;
+mod external;
 mod filter;
 mod gates;
 mod import;
@@ -91,6 +94,10 @@ pub use curve::CurveRecord;
 pub use decision::Decision;
 pub use error::{HistoryError, Result};
 pub use examine::{Examination, examine};
+pub use external::{
+    Entered, EnteredResults, ExternalResult, ExternalStanding, NewResult, ResultRefusal,
+    Sample as ExternalSample, parse_results,
+};
 pub use filter::Filter;
 pub use gates::{
     HoldReason, LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,

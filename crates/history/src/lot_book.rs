@@ -2,7 +2,7 @@
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, alarms};
-use super::{LotStatus, LotYield, Moment, Reopening};
+use super::{ExternalStanding, LotStatus, LotYield, Moment, Reopening};
 use serde::Serialize;
 use texts::{Args, Lang, Message};
 use utoipa::ToSchema;
@@ -24,6 +24,8 @@ pub struct LotEntry {
     pub cause_text_zh: Option<String>,
     /// Decisions to open the complete lot again.
     pub reopenings: Vec<Reopening>,
+    /// Whether the lot is acceptable by its results from outside of the rig; null for a lot that has and needs none.
+    pub external: Option<ExternalStanding>,
     /// State and recipe.
     #[serde(flatten)]
     pub standing: LotStatus,
@@ -75,6 +77,7 @@ impl Archive {
             book.push(LotEntry {
                 counts: self.lot_yield(&of_lot)?,
                 reopenings: self.reopenings(&lot)?,
+                external: self.external_standing(&lot)?,
                 opened: Moment(opened_us),
                 lot,
                 runs,

@@ -2,7 +2,7 @@
 
 use super::error::{Doing, Result};
 use super::source::Read;
-use super::{Archive, Filter, Moment};
+use super::{Archive, ExternalStanding, Filter, Moment};
 use rusqlite::types::Value;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -49,6 +49,9 @@ pub struct LotSummary {
     pub alarms: u64,
     /// Number of production parts by the bin that the verdict assigns.
     pub bins: std::collections::BTreeMap<String, u64>,
+    /// Whether the lot is acceptable by its results from outside of the rig; absent for a lot that has and needs none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub external: Option<ExternalStanding>,
 }
 
 /// Number of parts by verdict.
@@ -110,7 +113,7 @@ impl Archive {
             "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
                run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id,
                (SELECT consented_by FROM retest WHERE run_id = run.id),
-               run_end.ended, run_end.cause, run_end.cause_text, {}
+               run_end.ended, run_end.cause, run_end.cause_text, {}, recipe.body LIKE '%external%'
              FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
                LEFT JOIN run_end ON run_end.run_id = run.id
              WHERE run.id IN ({}) ORDER BY run.id",
@@ -137,11 +140,21 @@ impl Archive {
                 golden: 0,
                 alarms: 0,
                 bins: std::collections::BTreeMap::new(),
+                external: None,
             };
             self.count(row.get(9)?, &mut summary)?;
-            Ok(summary)
+            Ok((summary, row.get::<bool>(15)?))
         });
-        lots.doing("reading the lots")
+        let with_standing = |(mut summary, may_need): (LotSummary, bool)| {
+            if may_need {
+                summary.external = self.external_standing(&summary.lot)?;
+            }
+            Ok(summary)
+        };
+        lots.doing("reading the lots")?
+            .into_iter()
+            .map(with_standing)
+            .collect()
     }
 
     /// Returns the text of the recipe with this hash.

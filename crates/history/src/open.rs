@@ -20,7 +20,7 @@ use std::time::Duration;
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` migrates schema `n` to `n + 1`. Existing steps never change.
-pub(super) const MIGRATIONS: [&str; 16] = [
+pub(super) const MIGRATIONS: [&str; 17] = [
     include_str!("schema/v1.sql"),
     include_str!("schema/v2.sql"),
     include_str!("schema/v3.sql"),
@@ -37,6 +37,7 @@ pub(super) const MIGRATIONS: [&str; 16] = [
     include_str!("schema/v14.sql"),
     include_str!("schema/v15.sql"),
     include_str!("schema/v16.sql"),
+    include_str!("schema/v17.sql"),
 ];
 
 /// Schema that this program writes.

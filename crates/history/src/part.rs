@@ -1,6 +1,6 @@
 //! A part with its measurements, as page, exports and `--json` show it.
 
-use super::{Moment, curve};
+use super::{ExternalResult, Moment, curve};
 use machine::dut::Reason;
 use machine::instrument::curve::Curve;
 use serde::Serialize;
@@ -56,6 +56,9 @@ pub struct Part {
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "curve::shown")]
     #[schema(value_type = Vec<curve::Shown>)]
     pub curves: Vec<Curve>,
+    /// Results on this part from outside of the rig, in order of entry.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub external: Vec<ExternalResult>,
     #[serde(skip)]
     pub(super) row: i64,
 }
@@ -133,6 +136,7 @@ impl Part {
             uncertainty: serde_json::Map::new(),
             measurements: Vec::new(),
             curves: Vec::new(),
+            external: Vec::new(),
             row: 0,
         }
     }

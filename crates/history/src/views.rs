@@ -47,6 +47,15 @@ CREATE VIEW curves AS
     curve.samples, length(curve.packed) AS bytes
   FROM curve JOIN part ON part.id = curve.part_id JOIN run ON run.id = part.run_id
     JOIN lot ON lot.id = run.lot_id;
+DROP VIEW IF EXISTS external_results;
+CREATE VIEW external_results AS
+  SELECT lot.name AS lot, it.serial, it.run, it.seq, it.key AS parameter, it.value, it.uncertainty, it.low, it.high,
+    it.verdict, EXISTS (SELECT 1 FROM external_result AS later WHERE later.lot_id = it.lot_id AND later.key = it.key
+      AND later.serial IS it.serial AND later.run IS it.run AND later.seq IS it.seq AND later.id > it.id) AS superseded,
+    it.who, strftime('%Y-%m-%d %H:%M:%f', it.measured_at_us / 1e6, 'unixepoch', 'localtime') AS measured,
+    strftime('%Y-%m-%d %H:%M:%f', it.entered_at_us / 1e6, 'unixepoch', 'localtime') AS entered,
+    it.file_hash, it.line, it.recipe_hash
+  FROM external_result AS it JOIN lot ON lot.id = it.lot_id;
 DROP VIEW IF EXISTS alarms;
 CREATE VIEW alarms AS
   SELECT lot.name AS lot, run.number AS run, alarm.code, alarm.line, alarm.text,

@@ -12,8 +12,8 @@ use super::error::ApiError;
 use super::history::{self, Readers, compared, export, paper, rejudge};
 use super::router::AppState;
 use super::{
-    approval, calibration, events, gauge, login, lots, metrics, mimic, orders, page, prompt,
-    recipes, trace,
+    approval, calibration, events, external, gauge, login, lots, metrics, mimic, orders, page,
+    prompt, recipes, trace,
 };
 use axum::Json;
 use axum::extract::{FromRef, Request};
@@ -234,6 +234,13 @@ pub(super) fn routes() -> Vec<Route> {
             lots::lots,
         )
         .refuses(OF_HISTORY),
+        Route::post(
+            "/api/lots/external",
+            "Enters a result of a lot that was measured outside of the rig; the recipe of the lot judges it.",
+            external::enter,
+        )
+        .refuses(OF_HISTORY)
+        .needs(Role::Engineer),
         Route::get("/api/wear", "Uses of each wearing part since its replacement.", lots::wear)
             .refuses(OF_HISTORY),
         Route::get(
@@ -280,6 +287,11 @@ where
             "/api/history/batches",
             "Batches of a lot, with the curves of their chamber; none for parts that were tested one by one.",
             history::batches,
+        ),
+        Route::get(
+            "/api/history/external",
+            "Results of a lot that were measured outside of the rig, and whether the lot is acceptable by them.",
+            external::results,
         ),
         Route::get(
             "/api/history/query",

@@ -49,6 +49,7 @@ mod asked;
 mod calibration;
 mod error;
 mod events;
+mod external;
 mod fleet;
 mod gauge;
 mod history;

@@ -8,6 +8,7 @@ mod calibration;
 mod conformance;
 mod document;
 mod events;
+mod external;
 mod gauge;
 mod history;
 mod login;

@@ -101,6 +101,8 @@ pub enum Unit {
     Microsecond,
     /// Slope of a ramp, volt per second.
     VoltPerSecond,
+    /// Rise of a blocked voltage, volt per microsecond.
+    VoltPerMicrosecond,
     /// Inverse of a measuring current, milliohm per volt.
     MilliohmPerVolt,
     /// Temperature, degree Celsius.
@@ -124,6 +126,7 @@ impl Unit {
             Self::Millisecond => "ms",
             Self::Microsecond => "us",
             Self::VoltPerSecond => "V/s",
+            Self::VoltPerMicrosecond => "V/us",
             Self::MilliohmPerVolt => "mohm/V",
             Self::Celsius => "C",
             Self::Kelvin => "K",
@@ -137,6 +140,7 @@ impl Unit {
             Self::Milliohm => "mΩ",
             Self::Microampere => "µA",
             Self::Microsecond => "µs",
+            Self::VoltPerMicrosecond => "V/µs",
             Self::MilliohmPerVolt => "mΩ/V",
             Self::Celsius => "°C",
             Self::One

@@ -13,7 +13,7 @@ pub(super) struct ListArgs {
     format: FormatArgs,
 }
 
-pub(super) const COLUMNS: [Column<LotSummary>; 16] = [
+pub(super) const COLUMNS: [Column<LotSummary>; 17] = [
     ("lot", |it| it.lot.clone()),
     ("run", |it| it.run.to_string()),
     ("recipe", |it| it.recipe.clone()),
@@ -32,6 +32,16 @@ pub(super) const COLUMNS: [Column<LotSummary>; 16] = [
     ("alarms", |it| it.alarms.to_string()),
     ("ended", |it| text(it.ended.as_ref())),
     ("cause", |it| text(it.cause.as_ref())),
+    ("external", |it| {
+        let word = |acceptable| {
+            if acceptable {
+                "acceptable"
+            } else {
+                "not acceptable"
+            }
+        };
+        text(it.external.as_ref().map(|it| word(it.acceptable)))
+    }),
 ];
 
 /// Column that only an answer about many rigs has.

@@ -1,6 +1,6 @@
 //! `history show`: a lot with its runs, or a part with its measurements.
 
-use super::{lots, orders};
+use super::{lots, orders, results};
 use crate::cli::output::{Column, Format, FormatArgs, Output, bins, figure, text};
 use clap::Args;
 use history::{Archive, Filter, LotSummary, Measurement, Moment, OrderChoice, Part, Sample};
@@ -66,6 +66,8 @@ pub(super) fn run(archive: &Archive, args: &ShowArgs) -> anyhow::Result<()> {
                         if all.is_empty() { "none" } else { &all }
                     )?;
                 }
+                results::standing(archive, lot, &mut out)?;
+                results::table(&archive.external_results(lot)?, &mut out)?;
                 let ordered = archive.orders(&filter, &OrderChoice::default())?;
                 writeln!(out, "{} orders", ordered.len())?;
                 out.table(&ordered, &orders::COLUMNS)?;
@@ -140,6 +142,7 @@ fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     writeln!(out)?;
     out.table(&part.measurements, &MEASUREMENTS)?;
     writeln!(out)?;
+    results::table(&part.external, out)?;
     samples(part, out)?;
     part.curves.iter().try_for_each(|it| curve(it, out))
 }

@@ -23,6 +23,7 @@ const BOUNDED: &[(&str, usize)] = &[
     ("docs/fleet.md", 6144),
     ("docs/limits.md", 6144),
     ("docs/prompts.md", 4096),
+    ("docs/external.md", 6144),
     ("docs/serials.md", 6144),
     ("docs/tooling.md", 4096),
 ];

@@ -1,6 +1,7 @@
 //! Imports a file of an older system, CSV or spreadsheet depending on its extension. A file is imported whole or not at
 //! all, and only once into the same lot.
 
+pub mod results;
 mod sheet;
 #[cfg(test)]
 mod tests;

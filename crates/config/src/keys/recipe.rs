@@ -27,18 +27,33 @@ pub(super) const PROMPT: &[Key] = keys! {
 };
 
 /// Returns the keys that a recipe of this kind may have.
-pub fn of(kind: Kind) -> [Key; 9] {
+pub fn of(kind: Kind) -> Vec<Key> {
     let place = kind as usize;
     let sections = kind.sections();
-    *keys! {
+    let external = optional(
+        "external",
+        Form::Table(sections.external),
+        "history",
+        "results that are measured outside of the rig on samples of the lot: a lot is acceptable when it has each of them, all good",
+    );
+    let before = keys! {
         key("name", Form::Text, "history", "equal to the name of the file");
         key("kind", Form::Choice(&Kind::NAMES[place..=place]), "station", "kind of part");
         key("title_en", Form::Text, "report, hmi", "title in English");
         key("title_zh", Form::Text, "report, hmi", "title in Chinese");
         key("part", Form::Table(sections.part), "guard, gauge", "the part itself");
         key("limits", Form::Table(sections.limits), "gauge", "limits, inclusive; a missing side is not judged");
+    };
+    let after = keys! {
         key("decision", Form::Table(DECISION), "gauge, station", "how results become verdicts");
         key("test", Form::Table(sections.test), "station", "how the part is measured");
         optional("prompt", Form::List(&Form::Table(PROMPT)), "station", "what a person must answer during a lot; nothing moves meanwhile");
-    }
+    };
+    let external = (!sections.external.is_empty()).then_some(external);
+    before
+        .iter()
+        .copied()
+        .chain(external)
+        .chain(after.iter().copied())
+        .collect()
 }

@@ -90,6 +90,21 @@ CREATE OR REPLACE VIEW relayrig.alarms AS
   WHERE alarm.kind = 'alarm';
 COMMENT ON VIEW relayrig.alarms IS 'Occurrences of alarms';
 
+CREATE OR REPLACE VIEW relayrig.external_results AS
+  SELECT rig.site, rig.rig, it.body ->> 'lot' AS lot, it.body ->> 'serial' AS serial, (it.body ->> 'run')::bigint AS run,
+    (it.body ->> 'seq')::bigint AS seq, it.body ->> 'key' AS parameter, (it.body ->> 'value')::double precision AS value,
+    (it.body ->> 'uncertainty')::double precision AS uncertainty, (it.body ->> 'low')::double precision AS low,
+    (it.body ->> 'high')::double precision AS high, it.body ->> 'verdict' AS verdict,
+    it.row_id < max(it.row_id) OVER (PARTITION BY it.history_id, it.body ->> 'lot', it.body ->> 'key',
+      it.body ->> 'serial', it.body ->> 'run', it.body ->> 'seq') AS superseded,
+    it.body ->> 'who' AS who, to_timestamp((it.body ->> 'measured_at_us')::bigint / 1e6) AS measured,
+    to_timestamp((it.body ->> 'entered_at_us')::bigint / 1e6) AS entered, it.body ->> 'file_hash' AS file_hash,
+    (it.body ->> 'line')::bigint AS line, it.body ->> 'recipe_hash' AS recipe_hash
+  FROM relayrig.row_now AS it JOIN relayrig.history ON history.id = it.history_id
+    JOIN relayrig.rig ON rig.id = history.rig_id
+  WHERE it.kind = 'external_result';
+COMMENT ON VIEW relayrig.external_results IS 'Results from outside of the rig; those that a later one supersedes do not count';
+
 DO $$ BEGIN
   IF to_regrole('relayrig_writer') IS NULL THEN CREATE ROLE relayrig_writer NOLOGIN; END IF;
   IF to_regrole('relayrig_reader') IS NULL THEN CREATE ROLE relayrig_reader NOLOGIN; END IF;

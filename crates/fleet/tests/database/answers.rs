@@ -37,6 +37,7 @@ fn two_rigs() -> (Server, [Rig; 2]) {
         rig.gates("A");
         rig.run("B", 25, 3);
         rig.run("A", 10, 2);
+        rig.external("E");
         rig.cut_off("C", || {
             wait(rig.push(&server.owner())).unwrap();
         });

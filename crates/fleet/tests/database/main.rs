@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod answers;
+mod external;
 mod once;
 mod overview;
 mod plans;

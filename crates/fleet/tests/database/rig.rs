@@ -4,9 +4,9 @@ use config::{FleetSettings, FleetTarget};
 use fleet::{Pushed, Result, push};
 use history::outbox::Outbox;
 use history::{
-    AlarmRecord, HoldReason, InterruptedRecord, LandingRecord, LotRecord, LotState, LotStateRecord,
-    MeasurementRecord, OrderRecord, PartRecord, ReferenceCheckRecord, Row, SampleRecord, Store,
-    snapshot_hash,
+    AlarmRecord, EnteredResults, HoldReason, InterruptedRecord, LandingRecord, LotRecord, LotState,
+    LotStateRecord, MeasurementRecord, Moment, OrderRecord, PartRecord, ReferenceCheckRecord, Row,
+    SampleRecord, Store, csv, parse_results, snapshot_hash,
 };
 use machine::dut::Reason;
 use machine::station::catalogue::AlarmCode;
@@ -128,6 +128,48 @@ impl Rig {
         rows.iter()
             .for_each(|row| store.record(std::slice::from_ref(row)).unwrap());
         store.close_lot(lot, at(44)).unwrap();
+    }
+
+    /// Records a run of a lot that needs results from outside of the rig, and results on two parts and the lot: one passes,
+    /// one fails and is corrected, one is undecided.
+    pub fn external(&self, lot: &str) {
+        let recipe = "[external]\nr_iso_ohm = { low = 1e9 }\ndwv_ua = { high = 10 }\n\
+            [decision]\nrule = \"guard_band\"\nslow_repeats = 3\n";
+        let mut store = Store::open(&self.db).unwrap();
+        let record = LotRecord {
+            recipe: "ssr".to_owned(),
+            recipe_hash: snapshot_hash(recipe),
+            recipe_snapshot: recipe.to_owned(),
+            ..lot_record(lot)
+        };
+        store.begin_lot(&record).unwrap();
+        let parts: Vec<Row> = (1..=4).map(|seq| Row::Part(part(lot, seq, 2))).collect();
+        store.record(&parts).unwrap();
+        store.close_lot(lot, at(9)).unwrap();
+        let first = format!(
+            "serial,key,value,u\n{lot}-000001,r_iso_ohm,0.30000000000000004e11,4e9\n{lot}-000002,r_iso_ohm,5e8,1e7\n,dwv_ua,9.9,0.2"
+        );
+        self.enter(lot, &first);
+        self.enter(
+            lot,
+            &format!("serial,key,value,u\n{lot}-000002,r_iso_ohm,3e10,1e9"),
+        );
+    }
+
+    /// Enters the results of a file.
+    pub fn enter(&self, lot: &str, file: &str) {
+        let results = parse_results(&csv::read(file).unwrap()).unwrap();
+        let entered = Store::open(&self.db)
+            .unwrap()
+            .enter_results(&EnteredResults {
+                lot,
+                recipe: None,
+                who: "zhao",
+                at: Moment(at(60)),
+                file_hash: Some(&snapshot_hash(file)),
+                results: &results,
+            });
+        entered.unwrap().unwrap();
     }
 
     /// Records a run of a lot in which the reference part G-1 is measured, and the good check a second later.

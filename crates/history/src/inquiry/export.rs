@@ -6,28 +6,50 @@ use super::Result;
 use super::figures::agreed;
 use crate::columns::{self, Cell};
 use crate::report::sheet::{Sheet, SheetFacts};
-use crate::report::{Paper, figure, parameter, short_hash};
+use crate::report::{Paper, external_sentence, figure, parameter, short_hash};
 use crate::{Archive, Filter, csv};
+use machine::dut::External;
 use rust_xlsxwriter::Workbook;
+use std::collections::BTreeSet;
 use std::io::Write;
 
-/// Writes the header and one line per part. `history import` can read the file back; no text acts as a formula.
+/// Writes the header and one line per part; last the results of the part from outside of the rig, where a selected lot
+/// has any. `history import` can read the file back; no text acts as a formula.
 pub fn csv_lines(
     archive: &Archive,
     filter: &Filter,
     parameters: &[String],
     out: &mut impl Write,
 ) -> Result<()> {
-    let header = columns::header(parameters);
-    csv::write(out, &header)?;
+    let external = external_keys(archive, filter)?;
+    let header = columns::header(parameters).into_iter();
+    csv::write(out, header.chain(columns::external_header(&external)))?;
     archive.each(filter, |part| {
-        let cells = columns::row(&part, parameters).map(|cell| match cell {
+        let cells = columns::row(&part, parameters).chain(columns::external(&part, &external));
+        let texts = cells.map(|cell| match cell {
             Cell::Text(text) => csv::escape_formula(&text).into_owned(),
             figure => figure.to_string(),
         });
-        csv::write(out, cells)
+        csv::write(out, texts)
     })??;
     Ok(())
+}
+
+/// Returns the quantities of which the selected lots have results from outside of the rig.
+fn external_keys(archive: &Archive, filter: &Filter) -> Result<Vec<External>> {
+    let mut lots: Vec<String> = archive
+        .lots(filter)?
+        .into_iter()
+        .filter(|it| it.external.is_some())
+        .map(|it| it.lot)
+        .collect();
+    lots.dedup();
+    let mut keys = BTreeSet::new();
+    for lot in lots {
+        let results = archive.external_results(&lot)?;
+        keys.extend(results.iter().filter_map(|it| External::from_key(&it.key)));
+    }
+    Ok(keys.into_iter().collect())
 }
 
 /// Returns a spreadsheet with a summary and native charts; calls `each` for every part.
@@ -97,6 +119,12 @@ fn facts(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<Vec<(Strin
     let members = members
         .into_iter()
         .filter_map(|(id, text)| Some((language.text(id).to_owned(), text?)));
+    let standing = match &filter.lot {
+        Some(lot) => archive.external_standing(lot)?,
+        None => None,
+    };
+    let name = language.text("paper-external").to_owned();
+    let standing = standing.map(|it| (name, external_sentence(language, &it)));
     let answers = match filter.lot {
         Some(_) => archive.answers(filter)?,
         None => Vec::new(),
@@ -111,6 +139,7 @@ fn facts(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<Vec<(Strin
     Ok([(recipe, recipes.join(", "))]
         .into_iter()
         .chain(members)
+        .chain(standing)
         .chain(answers)
         .collect())
 }

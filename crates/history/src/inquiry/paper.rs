@@ -66,6 +66,8 @@ pub fn lot_report(
         effectiveness: use_of_time(archive, filter, &runs, ideal_cycle_s)?,
         batches: &archive.batches(filter)?,
         rejects: pareto::rejects(archive, filter, LISTED)?,
+        external: &archive.external_results(lot)?,
+        standing: archive.external_standing(lot)?,
         alarms: &archive.alarms(filter)?,
         answers: &archive.answers(filter)?,
     };
@@ -113,7 +115,10 @@ pub fn part_certificate(
     match (part, run) {
         (Some(part), Some(run)) => {
             let tested_in = archive.batch_of(part)?;
-            Ok(certificate(paper, part, run, tested_in.as_ref()))
+            let results = archive.external_results(lot)?;
+            let standing = archive.external_standing(lot)?;
+            let external = (results.as_slice(), standing.as_ref());
+            Ok(certificate(paper, part, run, tested_in.as_ref(), external))
         }
         _ => Err(InquiryError::missing(format!(
             "lot {lot:?} has no part {seq} (in this run and of this recipe)"

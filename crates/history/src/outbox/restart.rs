@@ -25,7 +25,7 @@ pub enum Restart {
 
 /// Kind of the entries, table, column with the row number of an entry, expression for the run of a row (NULL outside
 /// of runs), and expression for the time of a row outside of runs.
-const QUEUED: [[&str; 5]; 12] = [
+const QUEUED: [[&str; 5]; 13] = [
     ["run", "run", "id", "id", "0"],
     ["run_state", "run", "id", "id", "0"],
     ["part", "part", "id", "run_id", "0"],
@@ -43,6 +43,13 @@ const QUEUED: [[&str; 5]; 12] = [
     ["golden_check", "golden_check", "id", "run_id", "0"],
     ["ordered", "ordered", "id", "run_id", "at_us"],
     ["reopening", "reopening", "id", "NULL", "at_us"],
+    [
+        "external_result",
+        "external_result",
+        "id",
+        "NULL",
+        "entered_at_us",
+    ],
     ["calibration", "calibration", "id", "NULL", "made_at_us"],
 ];
 

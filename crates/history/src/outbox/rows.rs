@@ -47,7 +47,7 @@ const fn table(
 }
 
 /// Every table whose rows travel as JSON.
-const TABLES: [Table; 10] = [
+const TABLES: [Table; 11] = [
     table(
         "run_state",
         "run",
@@ -114,6 +114,16 @@ const TABLES: [Table; 10] = [
         "id",
         "NULL",
         "'lot', (SELECT name FROM lot WHERE id = lot_id), 'at_us', at_us, 'who', who, 'why', why",
+    ),
+    table(
+        "external_result",
+        "external_result",
+        "id",
+        "NULL",
+        "'lot', (SELECT name FROM lot WHERE id = lot_id), 'serial', serial, 'run', run, 'seq', seq, 'key', key, 'value', \
+         value, 'uncertainty', uncertainty, 'low', low, 'high', high, 'verdict', verdict, 'recipe_hash', recipe_hash, \
+         'who', who, 'measured_at_us', measured_at_us, 'entered_at_us', entered_at_us, 'file_hash', file_hash, 'line', \
+         line",
     ),
     table(
         "calibration",

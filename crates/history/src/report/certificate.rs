@@ -4,26 +4,29 @@ use super::data_matrix::data_matrix;
 use super::lot::{limits, source};
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{doubt_decimals, figure, parameter, short_hash};
-use super::{Paper, batch, curves, words};
-use crate::{Batch, LotSummary, Measurement, Part};
+use super::{Paper, batch, curves, external, words};
+use crate::{Batch, ExternalResult, ExternalStanding, LotSummary, Measurement, Part};
 use maud::{Markup, PreEscaped, html};
 use quality::Limits;
 use texts::Lang;
 
 /// Returns the certificate of `part`, which must have its measurements; `run` is the run that tested the part,
-/// `tested_in` its batch, if any.
+/// `tested_in` its batch, if any. A part of a lot that is not acceptable by its results from outside of the rig gets a
+/// record instead.
 pub fn certificate(
     paper: &Paper,
     part: &Part,
     run: &LotSummary,
     tested_in: Option<&Batch>,
+    (results_of_lot, standing): (&[ExternalResult], Option<&ExternalStanding>),
 ) -> String {
     let language = paper.language;
-    let title = language.text("paper-test_certificate");
+    let acceptable = standing.is_none_or(|it| it.acceptable);
     let title = match part.verdict.as_str() {
-        "pass" => title,
+        "pass" if acceptable => language.text("paper-test_certificate"),
         _ => language.text("paper-test_record"),
     };
+    let own = |it: &&ExternalResult| it.is_of_lot() || it.is_on(part);
     let number = format!("{}-{}-{:06}", part.lot, part.run, part.seq);
     let body = html! {
         (head(title, &format!("{} {number}", language.text("paper-number"))))
@@ -35,9 +38,11 @@ pub fn certificate(
         @for reason in &part.reason_codes { p { (words::reason(language, reason)) } }
         (results(language, part))
         p.note { (language.text("paper-uncertainty_note")) }
+        (external::table(paper, results_of_lot.iter().filter(own)))
+        (external::standing(language, standing))
         @if let Some(it) = tested_in { (batch::of_part(paper, it, part.seq)) }
         (curves::of_part(paper, part))
-        p.remark { (language.text("paper-not_tested")) }
+        (external::remark(language, !results_of_lot.is_empty()))
         (sign_off(language))
     };
     page(paper, Format::Portrait, &format!("{title} {number}"), &body)
@@ -99,7 +104,7 @@ fn results(language: Lang, part: &Part) -> Markup {
 }
 
 /// Rounds the uncertainty to two significant digits and the value to the same decimal place (GUM 7.2.6).
-fn rounded(value: Option<f64>, uncertainty: Option<f64>) -> (String, String) {
+pub(super) fn rounded(value: Option<f64>, uncertainty: Option<f64>) -> (String, String) {
     let Some(doubt) = uncertainty.filter(|it| it.is_finite() && *it > 0.0) else {
         return (figure(value), figure(uncertainty));
     };

@@ -1,11 +1,14 @@
-//! Printable report of a lot: counts, reasons, capability, use of time, alarms, answers to prompts, rejects.
+//! Printable report of a lot: counts, reasons, capability, use of time, results from outside of the
+//! rig, alarms, answers to prompts, rejects.
 
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{figure, parameter, percent, short_hash, span, unbroken};
-use super::{Paper, alarms, pareto};
+use super::{Paper, alarms, external, pareto};
 use super::{batch, charts};
 use crate::inquiry::pareto::Rejects;
-use crate::{Alarm, Batch, LotSummary, LotYield, PromptAnswer, Reopening};
+use crate::{
+    Alarm, Batch, ExternalResult, ExternalStanding, LotSummary, LotYield, PromptAnswer, Reopening,
+};
 use maud::{Markup, PreEscaped, html};
 use quality::capability::{Index, by_percentiles};
 use quality::effectiveness::Effectiveness;
@@ -31,6 +34,10 @@ pub struct LotReport<'a> {
     pub batches: &'a [Batch],
     /// Rejects with their reasons.
     pub rejects: Rejects,
+    /// Results from outside of the rig.
+    pub external: &'a [ExternalResult],
+    /// Whether the lot is acceptable by them; `None` for a lot that has and needs none.
+    pub standing: Option<ExternalStanding>,
     /// Alarms in order of time.
     pub alarms: &'a [Alarm],
     /// Answers to prompts in order of time.
@@ -58,12 +65,14 @@ impl LotReport<'_> {
             (self.facts(paper))
             @for it in self.reopenings { p.remark { (reopening(paper, it)) } }
             h2 { (language.text("paper-result")) }
+            (external::standing(language, self.standing.as_ref()))
             (self.counts(language))
             (pareto::pareto(language, language.text("paper-reasons"), &self.rejects.reasons, Some(self.rejects.parts)))
             h2 { (language.text("paper-parameters")) }
             (self.table(language))
             p.note { (language.text("paper-capability_note")) }
             (self.histograms(language))
+            (external::table(paper, self.external))
             @if let Some(it) = &self.effectiveness { (use_of_time(language, it)) }
             @if !self.batches.is_empty() { (batch::all(paper, self.batches)) }
             h2 { (language.text("paper-alarms")) }
@@ -72,7 +81,7 @@ impl LotReport<'_> {
             @if !self.answers.is_empty() { (answers(paper, self.answers)) }
             h2 { (language.text("paper-rejects")) }
             (pareto::rejects(language, &self.rejects))
-            p.remark { (language.text("paper-not_tested")) }
+            (external::remark(language, !self.external.is_empty()))
             (sign_off(language))
         };
         let title = format!("{title} {}", self.lot);

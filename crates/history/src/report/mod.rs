@@ -22,6 +22,7 @@ mod charts;
 pub mod comparison;
 mod curves;
 mod data_matrix;
+mod external;
 pub mod lot;
 mod page;
 mod pareto;
@@ -34,6 +35,7 @@ pub mod spc;
 pub mod svg;
 mod words;
 
+pub use external::sentence as external_sentence;
 pub use texts::Lang;
 pub use words::significant;
 pub(crate) use words::{figure, parameter, short_hash};

@@ -13,6 +13,7 @@ use crate::{
     Alarm, AlarmState, Batch, BatchAir, BatchSocket, LotSummary, LotYield, Measurement, Part,
     PromptAnswer, Reopening, Shelf, Yield,
 };
+use crate::{ExternalResult, ExternalStanding};
 use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};
@@ -33,6 +34,9 @@ fn paper(language: Lang) -> Paper {
         simulated: false,
     }
 }
+
+/// A lot without results from outside of the rig.
+const NO_RESULTS: (&[ExternalResult], Option<&ExternalStanding>) = (&[], None);
 
 fn run() -> LotSummary {
     LotSummary {
@@ -58,6 +62,7 @@ fn run() -> LotSummary {
         },
         golden: 0,
         alarms: 1,
+        external: None,
         bins: [("pass".to_owned(), 2), ("voltage".to_owned(), 1)].into(),
     }
 }
@@ -133,6 +138,8 @@ fn lot_report_on(paper: &Paper) -> String {
         effectiveness: None,
         batches: &[some_batch()],
         rejects: some_rejects(),
+        external: &[],
+        standing: None,
         alarms: &alarms,
         answers: &[PromptAnswer {
             at: Moment(1_000_000),
@@ -177,8 +184,14 @@ fn papers_of_a_batch_draw_its_curve_and_switchings() {
             seq: 7,
             ..part("pass")
         };
-        let bare = certificate(&paper(language), &own, &run(), None);
-        let page = certificate(&paper(language), &own, &run(), Some(&some_batch()));
+        let bare = certificate(&paper(language), &own, &run(), None, NO_RESULTS);
+        let page = certificate(
+            &paper(language),
+            &own,
+            &run(),
+            Some(&some_batch()),
+            NO_RESULTS,
+        );
         assert_eq!(marks(&page), marks(&bare) + 2);
         assert!(page.contains("20 min") == bare.contains("20 min") && page.contains("K/min"));
         let words = language.text("paper-batch_note");
@@ -264,7 +277,7 @@ fn typed_text_stays_text_on_every_page() {
         let paper = paper(language);
         for page in [
             lot_report(language),
-            certificate(&paper, &part("pass"), &run(), None),
+            certificate(&paper, &part("pass"), &run(), None, NO_RESULTS),
             spc(&paper, EVIL, std::slice::from_ref(&named), 3),
         ] {
             assert!(page.contains("&lt;script&gt;") && !page.contains("<script"));
@@ -280,7 +293,7 @@ fn every_page_of_a_good_part_names_untested_properties() {
     ] {
         let pages = [
             lot_report(language),
-            certificate(&paper(language), &part("pass"), &run(), None),
+            certificate(&paper(language), &part("pass"), &run(), None, NO_RESULTS),
             process_card(language),
         ];
         for page in pages {
@@ -291,9 +304,9 @@ fn every_page_of_a_good_part_names_untested_properties() {
 
 #[test]
 fn a_failed_part_gets_a_record_not_a_certificate() {
-    let good = certificate(&paper(Lang::En), &part("pass"), &run(), None);
+    let good = certificate(&paper(Lang::En), &part("pass"), &run(), None, NO_RESULTS);
     assert!(good.contains("<h1>Test certificate</h1>"));
-    let bad = certificate(&paper(Lang::En), &part("fail"), &run(), None);
+    let bad = certificate(&paper(Lang::En), &part("fail"), &run(), None, NO_RESULTS);
     assert!(bad.contains("<h1>Test record</h1>") && !bad.contains("certificate"));
 }
 
@@ -308,7 +321,7 @@ fn a_record_gives_reasons_in_its_language() {
         ),
         (Lang::Zh, ["动作电压 / V：超出上限", "线圈开路"]),
     ] {
-        let page = certificate(&paper(language), &failed, &run(), None);
+        let page = certificate(&paper(language), &failed, &run(), None, NO_RESULTS);
         assert!(words.iter().all(|it| page.contains(it)), "{page}");
     }
 }
@@ -330,7 +343,7 @@ fn a_bin_chart_names_bin_and_omitted_points() {
 
 #[test]
 fn a_certificate_rounds_the_last_attempt_by_its_uncertainty() {
-    let page = certificate(&paper(Lang::En), &part("pass"), &run(), None);
+    let page = certificate(&paper(Lang::En), &part("pass"), &run(), None, NO_RESULTS);
     assert!(
         page.contains(">7.704<") && page.contains(">0.011<"),
         "{page}"
@@ -360,7 +373,7 @@ fn paper_of_simulated_parts_says_simulation_across_it() {
             };
             for page in [
                 lot_report_on(&paper),
-                certificate(&paper, &part("pass"), &run(), None),
+                certificate(&paper, &part("pass"), &run(), None, NO_RESULTS),
                 spc(&paper, "", &named, 3),
                 alarms::list(&paper, "", &[]),
             ] {

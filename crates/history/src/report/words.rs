@@ -1,12 +1,14 @@
 //! Names and figures as printed pages show them.
 
-use machine::dut::{Characteristic, Reason};
+use machine::dut::{Characteristic, External, Reason};
 use texts::{Lang, Message};
 
 /// Returns the name of a parameter with its unit; for an unknown parameter, the key itself.
 pub fn parameter(lang: Lang, key: &str) -> String {
-    match Characteristic::from_key(key) {
-        Some(known) => format!("{} / {}", known.name(lang), known.unit().sign()),
+    let measured = Characteristic::from_key(key).map(|it| (it.name(lang), it.unit()));
+    let external = || External::from_key(key).map(|it| (it.name(lang), it.unit()));
+    match measured.or_else(external) {
+        Some((name, unit)) => format!("{name} / {}", unit.sign()),
         None => key.to_owned(),
     }
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod approval;
+mod external;
 mod gates;
 mod inquiring;
 mod migrating;

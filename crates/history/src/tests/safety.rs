@@ -181,8 +181,8 @@ fn every_table_is_strict_with_remarked_columns() {
     names.sort_unstable();
     assert_eq!(
         names.join(" "),
-        "alarm alarm_state batch batch_curve calibration curve export golden_check inside lot lot_state measurement ordered \
-         outbox parameter part reason recipe reopening retest rig row_floor run run_end sample series \
+        "alarm alarm_state batch batch_curve calibration curve export external_result golden_check inside lot lot_state \
+         measurement ordered outbox parameter part reason recipe reopening retest rig row_floor run run_end sample series \
          sqlite_sequence target tooling_plan tooling_step wear"
     );
     let own = tables.iter().filter(|(name, _)| name != "sqlite_sequence");

@@ -2,13 +2,15 @@
 
 use crate::form::{Form, Key, Range, from_to, key};
 
-/// Keys that one kind of device may have in three sections of its recipe.
+/// Keys that one kind of device may have in four sections of its recipe.
 #[derive(Debug, Clone, Copy)]
 pub struct Sections {
     /// Keys of `[part]`.
     pub part: &'static [Key],
     /// Keys of `[limits]`: a table for each characteristic.
     pub limits: &'static [Key],
+    /// Keys of `[external]`: a table for each result from outside of the rig that a recipe of this kind may demand.
+    pub external: &'static [Key],
     /// Keys of `[test]`.
     pub test: &'static [Key],
 }
@@ -86,6 +88,32 @@ macro_rules! signed_limit {
 }
 pub(crate) use signed_limit;
 
+/// Form of the limit of a result from outside of the rig: a table that must have `low`.
+macro_rules! at_least {
+    ($external:expr) => {
+        crate::form::Form::Table(&[crate::form::key(
+            "low",
+            crate::form::Form::Number($external.range()),
+            "history",
+            "least good value",
+        )])
+    };
+}
+pub(crate) use at_least;
+
+/// As [`at_least!`], with `high`.
+macro_rules! at_most {
+    ($external:expr) => {
+        crate::form::Form::Table(&[crate::form::key(
+            "high",
+            crate::form::Form::Number($external.range()),
+            "history",
+            "greatest good value",
+        )])
+    };
+}
+pub(crate) use at_most;
+
 /// Keys of one table, written one per line.
 macro_rules! table {
     ($($key:expr;)+) => { &[$($key),+] };
@@ -94,7 +122,7 @@ pub(crate) use table;
 
 #[cfg(test)]
 mod tests {
-    use crate::dut::Kind;
+    use crate::dut::{External, Kind};
 
     #[test]
     fn a_recipe_limits_every_characteristic_of_its_kind() {
@@ -102,6 +130,15 @@ mod tests {
             let limits = kind.sections().limits.iter().map(|key| key.name);
             assert!(limits.eq(kind.characteristics().iter().map(|it| it.key())));
         }
+    }
+
+    #[test]
+    fn external_keys_of_recipes_are_those_of_results() {
+        let names = |kind: Kind| kind.sections().external.iter().map(|key| key.name);
+        for kind in Kind::ALL {
+            assert!(names(kind).all(|name| External::from_key(name).is_some()));
+        }
+        assert!(names(Kind::Ssr).eq(External::ALL.map(External::key)));
     }
 
     #[test]

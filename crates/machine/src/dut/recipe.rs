@@ -8,6 +8,7 @@ use super::card::Card;
 use super::characteristic::Characteristic;
 use super::device::{Made, Rig};
 use super::em_relay::recipe::RelayRecipe;
+use super::external::ExternalLimits;
 use super::made_up::MadeUp;
 use super::prompt::{self, Prompt};
 use super::resistor::recipe::ResistorRecipe;
@@ -68,9 +69,9 @@ pub struct Limits(BTreeMap<Characteristic, Ends>);
 
 /// Ends of a limit as written in a recipe: bare numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-struct Ends {
-    low: Option<f64>,
-    high: Option<f64>,
+pub(super) struct Ends {
+    pub low: Option<f64>,
+    pub high: Option<f64>,
 }
 
 impl Limits {
@@ -212,6 +213,9 @@ pub struct Recipe {
     pub title_zh: String,
     /// Limits that the part must keep.
     pub limits: Limits,
+    /// Limits of results from outside of the rig that every lot needs; the test does not measure them.
+    #[serde(default, skip_serializing_if = "ExternalLimits::is_empty")]
+    pub external: ExternalLimits,
     /// How results become verdicts.
     pub decision: Decision,
     /// Prompts that a person must answer during a lot.

@@ -1,13 +1,14 @@
 //! Data of the page (`GET /`), as JSON: texts of the pages, every characteristic of a device with its unit and names,
 //! and every bin that a kind of device names.
 
-use machine::dut::{Bin, Characteristic, Kind};
+use machine::dut::{Bin, Characteristic, External, Kind};
 use serde_json::{Value, json};
 use texts::Lang;
+use units::Unit;
 
 /// Families of texts that the answer to `GET /` omits: these texts reach the page inside alarms, reasons and refusals,
 /// or appear in print only.
-const ELSEWHERE: [&str; 32] = [
+const ELSEWHERE: [&str; 33] = [
     "alarm",
     "batch",
     "batch_choice",
@@ -18,6 +19,7 @@ const ELSEWHERE: [&str; 32] = [
     "column",
     "detail",
     "exchange",
+    "external",
     "fault",
     "instrument",
     "interruption",
@@ -42,10 +44,12 @@ const ELSEWHERE: [&str; 32] = [
     "wears",
 ];
 
-/// Returns `{"characteristics": [{"key", "unit", "en", "zh"}], "bins": [..]}`, the bins from `pass` to `retest`.
+/// Returns `{"characteristics": [{"key", "unit", "en", "zh"}], "external": [the same], "bins": [..]}`, the bins from `pass` to `retest`.
 pub(super) fn json() -> String {
-    let characteristics: Vec<Value> = Characteristic::all().map(named).collect();
-    json!({ "characteristics": characteristics, "bins": bins() }).to_string()
+    let of = |it: Characteristic| named(it.key(), it.unit(), |lang| it.name(lang));
+    let outside = |it: External| named(it.key(), it.unit(), |lang| it.name(lang));
+    let characteristics: Vec<Value> = Characteristic::all().map(of).collect();
+    json!({ "characteristics": characteristics, "external": External::ALL.map(outside), "bins": bins() }).to_string()
 }
 
 fn bins() -> Vec<&'static str> {
@@ -69,7 +73,7 @@ pub(super) fn words(shows: impl Fn(&str) -> bool) -> String {
     Value::Object(words.collect()).to_string()
 }
 
-fn named(it: Characteristic) -> Value {
-    let [en, zh] = Lang::ALL.map(|lang| it.name(lang));
-    json!({ "key": it.key(), "unit": it.unit(), "en": en, "zh": zh })
+fn named(key: &str, unit: Unit, name: impl Fn(Lang) -> &'static str) -> Value {
+    let [en, zh] = Lang::ALL.map(name);
+    json!({ "key": key, "unit": unit, "en": en, "zh": zh })
 }

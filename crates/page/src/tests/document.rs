@@ -8,10 +8,12 @@ use ::history::{
 use serde_json::{Map, Value, json};
 
 /// Routes that the test of successful answers leaves out: a stream without end, and routes that other tests call: to
-/// end sessions or change people (`login.rs`, `people.rs`), with a second engineer (`approval.rs`), and with a plan
+/// end sessions or change people (`login.rs`, `people.rs`), for a lot that needs results from outside of the rig
+/// (`external.rs`), with a second engineer (`approval.rs`), and with a plan
 /// under way (`plans.rs`).
-const APART: [&str; 12] = [
+const APART: [&str; 13] = [
     "/api/events",
+    "/api/lots/external",
     "/api/logout",
     "/api/password",
     "/api/people/change",

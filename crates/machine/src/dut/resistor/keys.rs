@@ -7,6 +7,7 @@ use crate::form::{Key, above_zero, from_to, key, whole};
 pub const SECTIONS: Sections = Sections {
     part: PART,
     limits: LIMITS,
+    external: &[],
     test: TEST,
 };
 

@@ -1,12 +1,14 @@
 //! Keys of the recipe of a solid-state relay.
 
-use crate::dut::keys::{BODY, PIN_LENGTH, Sections, limit, signed_limit, table};
+use crate::dut::External;
+use crate::dut::keys::{BODY, PIN_LENGTH, Sections, at_least, at_most, limit, signed_limit, table};
 use crate::form::{Form, Key, above_zero, from_to, key, optional};
 
-/// Keys of the sections `[part]`, `[limits]` and `[test]`.
+/// Keys of the sections `[part]`, `[limits]`, `[external]` and `[test]`.
 pub const SECTIONS: Sections = Sections {
     part: PART,
     limits: LIMITS,
+    external: EXTERNAL,
     test: TEST,
 };
 
@@ -47,6 +49,14 @@ const LIMITS: &[Key] = table! {
     optional("halfwave_pct", limit!("%", 100.0), "gauge", "AC parts: difference of the charges of both half cycles over their sum");
     optional("drift_mv", signed_limit!("mV", 1000.0), "gauge",
         "rise of the drop from 10 ms to 200 ms at 1 A, or at rated_a below 1 A; of AC parts at rated_a");
+};
+
+const EXTERNAL: &[Key] = table! {
+    optional("dv_dt_v_us", at_least!(External::StaticDvDt), "history",
+        "static dv/dt: greatest slope of the rated voltage at which the blocked output stays blocked");
+    optional("r_iso_ohm", at_least!(External::IsolationResistance), "history", "isolation resistance from input to output");
+    optional("dwv_ua", at_most!(External::WithstandLeakage), "history",
+        "leakage current from input to output at the voltage of the dielectric withstand test");
 };
 
 const TEST: &[Key] = table! {

@@ -80,8 +80,6 @@ PAGES.history = {enter() { makeFilter(); takeFilter(); readParts(); }};
 
 // --- one part ---
 
-const limitText = (it) => (it.low === null ? "" : "≥ " + it.low + " ") + (it.high === null ? "" : "≤ " + it.high);
-
 async function readPart() {
   const isNewest = newest(readPart);
   const which = Object.fromEntries(new URLSearchParams(location.hash.split("?")[1]));
@@ -142,6 +140,9 @@ function showPart(part) {
   const missing = new Set(part.reason_codes.map((it) => it.param).filter((it) => it && !isMeasured(it)));
   values.push(...Array.from(missing, (it) => row(nameOf(it), NONE, NONE, NONE, unitOf(it), NONE, verdictCell(part.verdict))));
   at("part_values").replaceChildren(...values);
+  const external = part.external ?? [];
+  at("part_external").hidden = external.length === 0;
+  at("part_results").replaceChildren(...external.map(externalRow));
   showCurves(part);
   showTestBars(part);
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>

@@ -65,10 +65,12 @@ function lotRow(line) {
   const state = make("span", word("lot_state-" + line.state), "lot_state " + line.state);
   if (line.why) state.append(make("small", said(line, "why")));
   if (line.cause && !underWay(line.lot)) state.append(make("small", line.cause + colon() + said(line, "cause_text")));
+  if (line.external) state.append(make("small", externalText(line.external), line.external.acceptable ? "" : "trouble"));
   for (const it of line.reopenings) state.append(make("small", word("lots-reopened") + colon() + it.why + bracketed(it.who)));
   const orders = make("div", undefined, "row");
   orders.append(lotButton("start", line, () => choose(line)),
     ...DECISIONS.map((order) => lotButton(order, line, () => askDecision(order, line.lot))));
+  if (line.external) orders.append(button(word("x-open"), () => openExternal(line.lot)));
   const final = line.first_pass + line.retest_pass;
   const passed = share(line.first_pass, line.parts) + (line.retest_pass ? bracketed(share(final, line.parts)) : "");
   return row(make("b", line.lot), state, line.recipe, clock(line.opened), integerText(line.runs), integerText(line.parts), passed,
@@ -139,6 +141,43 @@ at("decide").addEventListener("submit", (event) => {
   at("decide").close();
   const {order, lot} = at("decide").dataset;
   orderLot({order, lot, reason: at("decide_reason").value.trim()});
+});
+
+// --- results from outside of the rig ---
+
+function showExternal({standing, results}) {
+  at("x_standing").textContent = externalText(standing);
+  at("x_results").replaceChildren(...results.map(externalRow));
+}
+
+async function openExternal(lot) {
+  at("external").dataset.lot = at("x_lot").textContent = lot;
+  at("x_answer").textContent = "";
+  fillSelect(at("x_key"), EXTERNAL.map((it) => [it.key, it[language] + " / " + unitText(it.unit)]));
+  try {
+    showExternal(await (await ask("api/history/external" + query({lot}))).json());
+    at("external").showModal();
+  } catch (error) {
+    lotAnswer(error.message);
+  }
+}
+
+at("x_close").addEventListener("click", () => at("external").close());
+at("x_form").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const typed = {lot: at("external").dataset.lot, key: at("x_key").value, value: Number(at("x_value").value)};
+  if (at("x_u").value) typed.u = Number(at("x_u").value);
+  if (at("x_serial").value.trim()) typed.serial = at("x_serial").value.trim();
+  if (at("x_seq").value) typed.seq = Number(at("x_seq").value);
+  try {
+    const reply = await post("/api/lots/external", typed), body = await reply.json();
+    at("x_answer").textContent = reply.ok ? word("x-entered") : said(body, "reason");
+    if (!reply.ok) return;
+    showExternal(body);
+    readBook();
+  } catch {
+    at("x_answer").textContent = word("stop-lost");
+  }
 });
 
 // --- wear counters and audit ---

@@ -8,6 +8,28 @@ const verdictCell = (verdict) => {
   return cell;
 };
 
+const limitText = (it) => (it.low === null ? "" : "≥ " + it.low + " ") + (it.high === null ? "" : "≤ " + it.high);
+
+// --- results from outside of the rig ---
+
+function externalRow(it) {
+  const [value, uncertainty] = measured(it.value, it.uncertainty);
+  const verdict = it.superseded ? word("x-superseded") : verdictCell(it.verdict);
+  return row(it.serial || (it.seq === null ? word("lot") : it.run + " / " + it.seq), nameOf(it.key), value, uncertainty, unitOf(it.key),
+    limitText(it), verdict, clock(it.measured), it.who);
+}
+
+// Returns a sentence that says whether a lot is acceptable; empty for a lot that has and needs no such results.
+function externalText(it) {
+  if (!it) return "";
+  if (it.acceptable) return word("x-acceptable");
+  const counts = [[word("verdict-fail"), it.fail], [word("verdict-undecided"), it.undecided]].filter(([, count]) => count).map((pair) => pair.join(" "));
+  const missing = it.missing.length ? [word("x-missing") + " " + it.missing.map(nameOf).join(comma())] : [];
+  return word("x-not_acceptable") + colon() + [...counts, ...missing].join(comma());
+}
+
+// --- links and bars ---
+
 // Links to the page of a part; on the page of many rigs, to the page of the part's rig.
 function partLink(part) {
   const [site, ...rig] = (part.rig || "").split("/").map(encodeURIComponent);

@@ -1,7 +1,7 @@
 // A revision of a recipe as a sheet: every key in words with its unit; for an engineer with range and input.
 
 // Sections of the sheet, in order.
-const RECIPE_SECTIONS = ["about", "part", "decision", "limits", "test", "strategy", "prompt"];
+const RECIPE_SECTIONS = ["about", "part", "decision", "limits", "external", "test", "strategy", "prompt"];
 let recipe = null, revisions = [], drawnRecipe = "";
 // `typed`: texts typed into the newest revision, by path of the key. `refusedField`: the last refusal of a value.
 // `recipeMessage` returns the last message in the language of the page.
@@ -80,7 +80,7 @@ const places = (path) => (path.match(/\d+/g) ?? []).map((it) => Number(it) + 1).
 const fieldName = (path) => {
   const [section, key, side] = path.split(".");
   if (section === "prompt") return places(path) + " " + word("field-" + path.replace(/\.\d+/g, "").replaceAll(".", "-"));
-  return section === "limits" ? nameOf(key) + " " + word("r-" + side) : wordOr("field-" + path.replaceAll(".", "-"), nameOf(path.split(".").at(-1)));
+  return ["limits", "external"].includes(section) ? nameOf(key) + " " + word("r-" + side) : wordOr("field-" + path.replaceAll(".", "-"), nameOf(path.split(".").at(-1)));
 };
 
 const isFixed = (field) => field.path === "name" || Boolean(field.words) && field.words.length === 1;

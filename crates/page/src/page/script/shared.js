@@ -1,9 +1,9 @@
 "use strict";
 // Functions that all pages share. Texts enter the page through textContent only, so that no value can become markup.
 const WORDS = JSON.parse(document.getElementById("words").textContent);
-// Characteristics of every kind of device, with unit and names; the bins that some kind of device names.
-const {characteristics: CHARACTERISTICS, bins: BINS} = JSON.parse(document.getElementById("kinds").textContent);
-const UNITS = {1: "", ohm: "Ω", mOhm: "mΩ", "mohm/V": "mΩ/V", C: "°C", uA: "µA", us: "µs"};
+// Characteristics of every kind of device and quantities measured outside of the rig, with unit and names; the bins that some kind of device names.
+const {characteristics: CHARACTERISTICS, external: EXTERNAL, bins: BINS} = JSON.parse(document.getElementById("kinds").textContent);
+const UNITS = {1: "", ohm: "Ω", mOhm: "mΩ", "mohm/V": "mΩ/V", C: "°C", uA: "µA", us: "µs", "V/us": "V/µs"};
 const VERDICTS = ["pass", "fail", "void"];
 const NONE = "–";
 
@@ -37,7 +37,7 @@ const unitText = (unit) => UNITS[unit] ?? unit ?? "";
 
 // --- characteristics ---
 
-const characteristic = (key) => CHARACTERISTICS.find((it) => it.key === key);
+const characteristic = (key) => CHARACTERISTICS.find((it) => it.key === key) ?? EXTERNAL.find((it) => it.key === key);
 // Returns the name of a characteristic, or its key: imported files may hold characteristics that no kind has.
 const nameOf = (key) => characteristic(key)?.[language] ?? key;
 const unitOf = (key) => unitText(characteristic(key)?.unit);

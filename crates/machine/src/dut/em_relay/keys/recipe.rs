@@ -10,6 +10,7 @@ use crate::form::{Form, Key, above_zero, key, optional, whole};
 pub const SECTIONS: Sections = Sections {
     part: PART,
     limits: LIMITS,
+    external: &[],
     test: TEST,
 };
 
