@@ -14,7 +14,7 @@ use crate::module::tolerances::{self, Tolerances};
 use crate::rig::{Reply, Rig};
 use crate::scpi::of_rig;
 use crate::terminal::ModuleSpec;
-use crate::truth::{BodyTruth, Overdrive};
+use crate::truth::{BodyTruth, ContactMove, Overdrive};
 use crate::world::{self, WorldOptions};
 
 /// Choice of rig, lot and faults.
@@ -340,6 +340,11 @@ impl SharedRig {
     /// Returns every drive of a coil in a supply range above the commanded one, in order of time.
     pub fn overdrives(&self) -> Vec<Overdrive> {
         self.rig().record().overdrives().to_vec()
+    }
+
+    /// Returns every move of the main contacts of a contactor, in order of time.
+    pub fn contact_moves(&self) -> Vec<ContactMove> {
+        self.rig().record().contact_moves().to_vec()
     }
 
     /// Locks the rig. A poisoned lock is safe: a line that panics leaves the rig between two events.

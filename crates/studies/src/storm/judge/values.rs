@@ -5,7 +5,7 @@ use super::Case;
 use super::bodies::owners;
 use crate::bins::bin_of;
 use history::Part;
-use machine::dut::em_relay::Parameter;
+use machine::dut::Characteristic;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
@@ -23,9 +23,10 @@ pub fn violations(case: &Case) -> Vec<String> {
             continue;
         }
         let truth = serde_json::to_value(&body.part).unwrap_or_default();
-        let readings: Vec<Reading> = Parameter::ALL
+        let readings: Vec<Reading> = case
+            .limits
             .iter()
-            .filter_map(|parameter| Reading::of(*parameter, row, &truth))
+            .filter_map(|(of, _)| Reading::of(*of, row, &truth))
             .collect();
         let found = foreign_value(&readings, &body.part)
             .into_iter()
@@ -37,26 +38,26 @@ pub fn violations(case: &Case) -> Vec<String> {
 
 /// A measured value and its truth.
 struct Reading {
-    parameter: Parameter,
+    of: Characteristic,
     value: f64,
     expanded: f64,
     truth: f64,
 }
 
 impl Reading {
-    fn of(parameter: Parameter, row: &Part, truth: &Value) -> Option<Self> {
-        let key = parameter.name();
+    fn of(of: Characteristic, row: &Part, truth: &Value) -> Option<Self> {
+        let key = of.key();
         Some(Self {
-            parameter,
+            of,
             value: row.values.get(key)?.as_f64()?,
             expanded: row.uncertainty.get(key)?.as_f64()?,
             truth: truth[key].as_f64()?,
         })
     }
 
-    /// Returns the bin for parts that fail this parameter.
+    /// Returns the bin for parts that fail this characteristic.
     fn bin(&self) -> &'static str {
-        self.parameter.facts().definition.bin.name()
+        self.of.bin().name()
     }
 }
 
@@ -68,7 +69,7 @@ fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
         defined && (it.value - it.truth).abs() > FOREIGN_K * it.expanded
     };
     let it = readings.iter().find(far)?;
-    let (key, value, truth, u) = (it.parameter.name(), it.value, it.truth, it.expanded);
+    let (key, value, truth, u) = (it.of.key(), it.value, it.truth, it.expanded);
     Some(format!(
         "{key} {value} +- {u} cannot be of a part with {truth}"
     ))
@@ -77,10 +78,7 @@ fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
 fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
     // Distance of the truth from the nearer limit; positive inside the range.
     let inside = |it: &Reading| {
-        let own = case
-            .limits
-            .iter()
-            .find(|(known, _)| *known == it.parameter.into());
+        let own = case.limits.iter().find(|(known, _)| *known == it.of);
         own.map_or(f64::INFINITY, |(_, range)| {
             (it.truth - range.start()).min(range.end() - it.truth)
         })
@@ -92,7 +90,7 @@ fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) ->
         ("pass", None) => readings
             .iter()
             .find(beyond)
-            .map(|it| format!("passed with a true {} of {}", it.parameter.name(), it.truth)),
+            .map(|it| format!("passed with a true {} of {}", it.of.key(), it.truth)),
         (_, Some(defect)) => {
             let right = bin_of(defect).unwrap_or("");
             let named = row.bin.as_deref().unwrap_or("");

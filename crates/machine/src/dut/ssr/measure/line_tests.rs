@@ -151,6 +151,45 @@ fn a_line_that_dies_in_a_leakage_fails_no_part() {
 }
 
 #[test]
+fn a_loop_that_opens_in_its_record_fails_no_part() {
+    for zero_cross in [true, false] {
+        let part = changed(|it| it.zero_cross = zero_cross);
+        let mut bench = LineBench::with(part, &recipe(ZERO_CROSS, &[]));
+        assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
+        for opens_ms in (0..210).step_by(3) {
+            bench.part.loop_opens_s = f64::from(opens_ms) / 1e3;
+            let ended = ended(&bench.tested(false));
+            assert_eq!(ended, void("ssr_loop_dead", ""), "after {opens_ms} ms");
+        }
+        // Around a last zero of the current, an open loop changes nothing.
+        for tenths_ms in 2_100..2_170 {
+            bench.part.loop_opens_s = f64::from(tenths_ms) / 1e4;
+            let verdict = bench.tested(false).verdict();
+            let is_known = matches!(verdict, Verdict::Pass | Verdict::Void(_));
+            assert!(is_known, "after {tenths_ms} tenths: {verdict:?}");
+        }
+    }
+}
+
+#[test]
+fn a_part_that_misses_a_polarity_in_the_loop_fails() {
+    for dead in [1.0, -1.0] {
+        let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &[]));
+        bench.part.dead_in_loop = dead;
+        let test = bench.tested(false);
+        let code = Some(("ssr_half_wave", String::new()));
+        assert_eq!(ended(&test), ("fail", code), "{dead}");
+    }
+}
+
+#[test]
+fn a_short_in_the_socket_fails_no_part() {
+    let part = changed(|it| it.is_socket_shorted = true);
+    let (_, test) = tested(ZERO_CROSS, &[], part);
+    assert_eq!(ended(&test), void("ssr_socket_shorted", ""));
+}
+
+#[test]
 fn an_output_that_conducts_without_control_still_fails() {
     let shorted = changed(|it| it.shorted = 1.0);
     let sticking = changed(|it| it.sticks = true);

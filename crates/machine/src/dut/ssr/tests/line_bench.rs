@@ -217,7 +217,9 @@ impl LineBench {
         !self.part.stuck.contains(&point)
             && match point {
                 DigitalIn::ShortSeen => {
-                    closed(DigitalOut::ShortCheck) && self.part.shorted.abs() > 1.5
+                    let conducts = self.part.shorted.abs() > 1.5;
+                    let conducts = conducts && !closed(DigitalOut::Reference0);
+                    closed(DigitalOut::ShortCheck) && (conducts || self.part.is_socket_shorted)
                 }
                 DigitalIn::KelvinInPlus
                 | DigitalIn::KelvinInMinus
