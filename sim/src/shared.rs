@@ -327,6 +327,13 @@ impl SharedRig {
         self.rig().record().cancel_faults();
     }
 
+    /// Returns every instrument from its front panel to remote control, as a person does at the instrument.
+    pub fn release_panels(&self) {
+        if let Some(instruments) = self.rig().instruments_mut() {
+            instruments.release_panels();
+        }
+    }
+
     /// Returns the start of each recent motion that an output caused: microseconds and actuator.
     pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
         self.rig().record().motion_starts()

@@ -131,6 +131,8 @@ impl<'a> Storm<'a> {
             calibration = Some(self.calibration(scenario.rig, db)?);
         }
         rig.cancel_faults();
+        // An alarm has asked a person for this.
+        rig.release_panels();
         for n in 1..=CALM {
             let pause_us = CEASES_US.saturating_sub(rig.now_us()) + 1_000_000;
             let life = Life::calm(CALM_PARTS, pause_us);

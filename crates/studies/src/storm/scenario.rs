@@ -129,7 +129,8 @@ impl Scenario {
         }
         if dice.once_in(2) {
             for _ in 0..dice.between(1, 4) {
-                let fault = climate.instrument_fault(dice, wiring, &window(dice));
+                let window = window(dice);
+                let fault = climate.instrument_fault(dice, wiring, &window);
                 self.faults.push(fault);
             }
         }

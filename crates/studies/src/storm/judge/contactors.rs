@@ -79,5 +79,6 @@ fn must_be_open(case: &Case) -> Vec<(Range<u64>, String)> {
         );
         (from_us.min(next_us)..next_us, why)
     });
-    disturbed.chain(lives).collect()
+    let all = disturbed.chain(lives);
+    all.filter(|(us, _)| !us.is_empty()).collect()
 }

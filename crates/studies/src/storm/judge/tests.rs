@@ -446,6 +446,11 @@ fn a_contactor_that_stays_closed_is_found() {
         },
         "line_contactor was closed while a safety input was open",
     );
+    let mut restarted = sound();
+    restarted.lives[1].began_us = 20 * S + 500_000;
+    restarted.disturbed_us = Vec::new();
+    restarted.contact_moves = closed(19 * S, 21 * S + 11_000);
+    assert_eq!(restarted.violations(), Vec::<String>::new());
     let mut welded = sound();
     welded.contact_moves = closed(19 * S, 22 * S);
     welded.welded_us = vec![19 * S + 500_000];

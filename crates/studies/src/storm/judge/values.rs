@@ -6,6 +6,7 @@ use super::bodies::owners;
 use crate::bins::bin_of;
 use history::Part;
 use machine::dut::Characteristic;
+use machine::rig::bin::Bin;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
@@ -56,16 +57,14 @@ impl Reading {
     }
 
     /// Returns the bin for parts that fail this characteristic.
-    fn bin(&self) -> &'static str {
-        self.of.bin().name()
+    fn bin(&self) -> Bin {
+        self.of.bin()
     }
 }
 
 fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
-    // The resistance of an unstable contact differs at every closure: it has no single truth.
-    let unstable = part.defect == Some("unstable_contact");
     let far = |it: &&Reading| {
-        let defined = !(unstable && it.bin() == "contact");
+        let defined = part.defect.is_none_or(|defect| has_truth(defect, it));
         defined && (it.value - it.truth).abs() > FOREIGN_K * it.expanded
     };
     let it = readings.iter().find(far)?;
@@ -73,6 +72,22 @@ fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
     Some(format!(
         "{key} {value} +- {u} cannot be of a part with {truth}"
     ))
+}
+
+/// Returns true when a characteristic of a part with this defect has a single true value.
+fn has_truth(defect: &str, reading: &Reading) -> bool {
+    match defect {
+        // The resistance differs at every closure.
+        "unstable_contact" => reading.bin().name() != "contact",
+        // It depends on the phase of the line at which the control comes.
+        "no_zero_cross" => !["t_on_us", "v_zc_v"].contains(&reading.of.key()),
+        // It doubles every ten kelvins, and the part cools.
+        "leaky_junction" => reading.of.key() != "i_leak_hot_ua",
+        // It turns on later than a search waits near the threshold, and is hardly on when a pulse ends.
+        "slow_turn_on" => !["v_on_v", "v_off_v", "t_off_us"].contains(&reading.of.key()),
+        "slow_turn_off" => reading.of.key() != "v_off_v",
+        _one => true,
+    }
 }
 
 fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
@@ -95,7 +110,12 @@ fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) ->
             let right = bin_of(defect).unwrap_or("");
             let named = row.bin.as_deref().unwrap_or("");
             let near = readings.iter().any(|it| !clear(it) && !beyond(&it));
-            let also_beyond = || readings.iter().filter(beyond).any(|it| it.bin() == named);
+            let also_beyond = || {
+                readings
+                    .iter()
+                    .filter(beyond)
+                    .any(|it| it.bin().name() == named)
+            };
             (named != right && !near && !also_beyond())
                 .then(|| format!("{defect} belongs to {right}, its row says {named}"))
         }

@@ -70,6 +70,8 @@ pub struct OnState {
     pub peak_v: f64,
     /// Drop at the rated current, rms, V.
     pub rms_v: f64,
+    /// What the heat of an incomplete first half cycle changes of the peak and of the rms drop, V.
+    pub first_v: [f64; 2],
     /// Rise of the peak drop from the early to the late time, V.
     pub drift_v: f64,
     /// Mean of the voltage, V, and its standard uncertainty from the samples.
@@ -177,9 +179,11 @@ impl<'a> Drops<'a> {
         let ampere: Vec<f64> = samples.map(|it| self.ampere.at(it)).collect();
         let (unequal, mean_a) = self.unequal(whole);
         let (peak_a, periods) = (self.rated_peak_a, (whole.1 - whole.0) * self.current.hz);
+        let lead = lead_s * self.current.hz;
         Some(OnState {
             peak_v: peak_v(0.0),
-            rms_v: rms.at(-lead_s * self.current.hz),
+            rms_v: rms.at(-lead),
+            first_v: [peak, rms].map(|it| it.at(-lead) - it.at(0.0)),
             drift_v: peak_v(DRIFT_S[1]) - peak_v(DRIFT_S[0]),
             offset_v: (self.mean_v(whole, most_v), jumps_u(&clipped)),
             distortion_v: self.distortion_v(whole, most_v)?,
@@ -307,14 +311,18 @@ pub fn conclude(
         state.record.stop(Finding::HalfWave);
         return Ok(Next::Planned);
     };
-    if on.peak_v >= ac.drop_scale_v * 4.0 {
+    if on.peak_v >= FOLLOWED * 4.0 * ac.drop_scale_v {
         if plan.bounds(Parameter::Drop) {
             state.record.stop(Finding::PeakDropTooHigh);
         }
         return Ok(Next::Planned);
     }
     let peak_a = SQRT_2 * ac.rated_a;
-    let budget = |drop| accuracy::line_drop(plan, ac, &on, drop);
+    let [first_v, first_rms_v] = on.first_v;
+    let budget = |drop, first_v| {
+        let budget = accuracy::line_drop(plan, ac, &on, drop);
+        budget.with_random_bounds("first half cycle", first_v)
+    };
     let of_peak = (on.peak_v, on.ohm * peak_a);
     let of_rms = (on.rms_v, on.of_current_v(peak_a));
     let offset = accuracy::line_offset(ac, &on);
@@ -322,8 +330,8 @@ pub fn conclude(
     use Parameter as P;
     use Unit::{Millivolt, Percent, Volt};
     state.found([
-        (P::Drop, on.peak_v, Volt, budget(of_peak)),
-        (P::DropRms, on.rms_v, Volt, budget(of_rms)),
+        (P::Drop, on.peak_v, Volt, budget(of_peak, first_v)),
+        (P::DropRms, on.rms_v, Volt, budget(of_rms, first_rms_v)),
         (P::DcOffset, offset_mv, Millivolt, offset),
         (
             P::Distortion,
