@@ -14,7 +14,7 @@ use crate::module::tolerances::{self, Tolerances};
 use crate::rig::{Reply, Rig};
 use crate::scpi::of_rig;
 use crate::terminal::ModuleSpec;
-use crate::truth::{BodyTruth, Overdrive};
+use crate::truth::{BodyTruth, ContactMove, Overdrive};
 use crate::world::{self, WorldOptions};
 
 /// Choice of rig, lot and faults.
@@ -327,6 +327,13 @@ impl SharedRig {
         self.rig().record().cancel_faults();
     }
 
+    /// Returns every instrument from its front panel to remote control, as a person does at the instrument.
+    pub fn release_panels(&self) {
+        if let Some(instruments) = self.rig().instruments_mut() {
+            instruments.release_panels();
+        }
+    }
+
     /// Returns the start of each recent motion that an output caused: microseconds and actuator.
     pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
         self.rig().record().motion_starts()
@@ -340,6 +347,11 @@ impl SharedRig {
     /// Returns every drive of a coil in a supply range above the commanded one, in order of time.
     pub fn overdrives(&self) -> Vec<Overdrive> {
         self.rig().record().overdrives().to_vec()
+    }
+
+    /// Returns every move of the main contacts of a contactor, in order of time.
+    pub fn contact_moves(&self) -> Vec<ContactMove> {
+        self.rig().record().contact_moves().to_vec()
     }
 
     /// Locks the rig. A poisoned lock is safe: a line that panics leaves the rig between two events.

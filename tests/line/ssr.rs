@@ -131,6 +131,41 @@ fn a_line_that_dies_at_any_instant_fails_no_part() {
     assert!(voids >= 16, "only {voids} parts without a line");
 }
 
+/// Faults that open a circuit of the output, with the recipe of the parts and the time at which the test of the second
+/// part begins, s.
+const OPEN_CIRCUITS: [(&str, &str, f64); 7] = [
+    ("loop_dead", "ssr-ac-240v-5a-zc", 5.2),
+    ("loop_dead", "ssr-ac-240v-5a-random", 5.2),
+    ("loop_contactor_broken", "ssr-ac-240v-5a-zc", 5.2),
+    ("line_contactor_broken", "ssr-ac-240v-5a-zc", 5.2),
+    ("line_dead", "ssr-ac-240v-5a-random", 5.2),
+    ("output_lead_open", "ssr-dc-60v-3a", 3.6),
+    ("socket_short", "ssr-dc-60v-3a", 3.6),
+];
+
+#[test]
+fn a_circuit_that_opens_at_any_instant_fails_no_part() {
+    let workshop = Workshop::new("ssr-circuit-opens");
+    let run = "--config config/rigs/ssr run --sim --json --seed 1";
+    for (fault, recipe, from_s) in OPEN_CIRCUITS {
+        let mut voids = 0;
+        for number in 0..12 {
+            let at_s = from_s + 0.117 * f64::from(number);
+            let said = workshop.run(&format!(
+                "{run} --recipe {recipe} --lot {fault}-{recipe}-{number} --count 3 --fault {fault}={at_s:.3}"
+            ));
+            let rows = objects(&said.stdout);
+            for part in rows.iter().filter(|it| it["type"] == "part") {
+                let verdict = part["verdict"].as_str().unwrap();
+                let known = ["pass", "void"].contains(&verdict);
+                assert!(known, "{fault} at {at_s:.3} s: {part}");
+                voids += usize::from(verdict == "void");
+            }
+        }
+        assert!(voids >= 8, "{fault}, {recipe}: only {voids} parts are void");
+    }
+}
+
 #[test]
 fn a_lost_reply_makes_good_parts_void_never_failed() {
     let workshop = Workshop::new("ssr-lost-replies");

@@ -29,6 +29,30 @@ fn two_hundred_storms_break_no_rule_under_every_fault() {
     }
 }
 
+/// Recipes of the rig for solid-state relays, with the number of storms over each.
+const SOLID_STATE: [(&str, u64); 3] = [
+    ("ssr-dc-60v-3a", 40),
+    ("ssr-ac-240v-5a-zc", 25),
+    ("ssr-ac-240v-5a-random", 25),
+];
+
+#[test]
+fn storms_over_solid_state_relays_break_no_rule() {
+    let workshop = Workshop::new("tempest-ssr");
+    for (recipe, seeds) in SOLID_STATE {
+        let said = workshop.run(&format!(
+            "--config config/rigs/ssr study storm --recipe {recipe} --seeds {seeds} --json"
+        ));
+        assert_eq!(said.status, 0, "{recipe}: {}{}", said.stdout, said.stderr);
+        let figures = objects(&said.stdout);
+        assert_eq!(figure(&figures, "seeds that broke a rule"), 0.0);
+        for (name, each) in [("bodies", 3), ("alarms", 1), ("kills of the controller", 0)] {
+            let found = figure(&figures, name);
+            assert!(found > (each * seeds) as f64, "{recipe}, {name}: {found}");
+        }
+    }
+}
+
 #[test]
 fn a_seed_repeats_its_storm_bit_for_bit() {
     let workshop = Workshop::new("tempest-again");

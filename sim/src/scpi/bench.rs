@@ -43,6 +43,11 @@ impl Instruments {
         at.now_us
     }
 
+    /// Returns every instrument from its front panel to remote control.
+    pub fn release_panels(&mut self) {
+        self.devices.iter_mut().for_each(Device::release_panel);
+    }
+
     /// Checks that every instrument or adapter that a fault names exists.
     ///
     /// # Errors

@@ -62,6 +62,11 @@ impl Device {
         }
     }
 
+    /// Returns from the front panel to remote control.
+    pub fn release_panel(&mut self) {
+        self.local = false;
+    }
+
     /// Queues a message; it runs after all earlier ones.
     pub fn receive(&mut self, message: &[u8], at_us: u64, faults: &mut InstrumentFaults) {
         let mut strikes = |fault| faults.strikes(fault, &self.name, at_us).is_some();

@@ -58,7 +58,7 @@ faults! {
         LineWelded = "line_contactor_welded", LineBroken = "line_contactor_broken",
         LoopWelded = "loop_contactor_welded", LoopBroken = "loop_contactor_broken",
         MirrorsStuck = "mirrors_stuck", SocketShort = "socket_short",
-        LineDead = "line_dead",
+        LineDead = "line_dead", LoopDead = "loop_dead", LeadOpen = "output_lead_open",
     }
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",

@@ -200,6 +200,23 @@ impl<T> TestRecord<T> {
         self.stop.is_some()
     }
 
+    /// Returns the failure that has ended the test early; `None` without one.
+    pub fn why_failed(&self) -> Option<&Reason> {
+        match &self.stop {
+            Some(Stop::Fail(reason)) => Some(reason),
+            Some(Stop::Void(_) | Stop::Trouble(_)) | None => None,
+        }
+    }
+
+    /// Takes the failure that has ended the test early off the record, so that the test can go on.
+    pub fn take_failure(&mut self) -> Option<Reason> {
+        let failure = self.why_failed().cloned();
+        if failure.is_some() {
+            self.stop = None;
+        }
+        failure
+    }
+
     /// Returns why the test ended early; `None` if it did not.
     pub fn why_stopped(&self) -> Option<&Stop> {
         self.stop.as_ref()

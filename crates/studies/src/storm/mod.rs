@@ -9,6 +9,7 @@
 //! For each seed that breaks a rule, the report shows the broken rules, the last lines of its trace and the command
 //! that reproduces it: the same seed gives the same trace, bit for bit.
 
+mod climate;
 mod judge;
 pub(crate) mod life;
 mod operator;
@@ -21,6 +22,7 @@ use super::output::Report;
 use super::pool;
 use anyhow::Context;
 use app::exit::Exit;
+use climate::Climate;
 use config::Plant;
 use history::{Archive, Filter};
 use judge::Case;
@@ -46,6 +48,7 @@ const CALM_PARTS: u64 = 2;
 struct Storm<'a> {
     order: &'a Order,
     plant: Plant,
+    climate: Climate,
     folder: TempDir,
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
@@ -69,10 +72,12 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 impl<'a> Storm<'a> {
     fn new(order: &'a Order) -> anyhow::Result<Self> {
         let folder = TempDir::new()?;
-        std::fs::write(folder.path().join("world.toml"), scenario::WORLD)?;
+        let climate = Climate::of(order.recipe.device.kind());
+        std::fs::write(folder.path().join("world.toml"), climate.world)?;
         Ok(Self {
             order,
             plant: Plant::load(&order.folder())?,
+            climate,
             folder,
             calibrations: Default::default(),
         })
@@ -107,10 +112,12 @@ impl<'a> Storm<'a> {
 
     /// Runs all lives of a seed and returns the case for `judge`.
     fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
-        let scenario = Scenario::of(seed, self.order.parts, &self.plant.wiring);
+        let wiring = &self.plant.wiring;
+        let scenario = Scenario::of(seed, self.order.parts, wiring, &self.climate);
         let rig = self.rig(scenario.rig, scenario.uncalibrated, &scenario.faults)?;
         let runner = self.runner(&rig, db);
-        let mut calibration = match scenario.uncalibrated {
+        let needs = self.climate.calibrates;
+        let mut calibration = match scenario.uncalibrated || !needs {
             true => None,
             false => Some(self.calibration(scenario.rig, db)?),
         };
@@ -120,10 +127,12 @@ impl<'a> Storm<'a> {
             let lot = format!("life-{}", lives.len() + 1);
             lives.push(runner.run_life(&lot, life, calibration.clone(), operator_dice.apart())?);
         }
-        if calibration.is_none() {
+        if calibration.is_none() && needs {
             calibration = Some(self.calibration(scenario.rig, db)?);
         }
         rig.cancel_faults();
+        // An alarm has asked a person for this.
+        rig.release_panels();
         for n in 1..=CALM {
             let pause_us = CEASES_US.saturating_sub(rig.now_us()) + 1_000_000;
             let life = Life::calm(CALM_PARTS, pause_us);
@@ -158,6 +167,9 @@ impl<'a> Storm<'a> {
             driven: rig.motion_starts(),
             touched: rig.crashes(),
             overdrives: rig.overdrives(),
+            contact_moves: rig.contact_moves(),
+            welded_us: scenario.welded_us.clone(),
+            watchdog,
             rows: archive.query(&all)?,
             alarms: archive.alarms(&Filter::default())?,
             limits: self.order.admitted(),

@@ -102,8 +102,10 @@ fn shown(order: &Order, it: &Outcome) -> String {
         some => some.join("; "),
     };
     format!(
-        "seed {seed}: {what}\n  faults: {}\n  {last}\n  again: relayrig study storm --seed {seed} --parts {}",
+        "seed {seed}: {what}\n  faults: {}\n  {last}\n  again: relayrig --config {} study storm --recipe {} --seed {seed} --parts {}",
         it.faults.join(" "),
+        order.config.display(),
+        order.recipe.name,
         order.parts,
     )
 }

@@ -4,6 +4,7 @@
 //! No fault lasts beyond [`CEASES_US`] of rig time: at that time the study cancels each fault that still waits for its
 //! part. Lives that start later have no faults.
 
+use super::climate::Climate;
 use crate::dice::Dice;
 use machine::rig::wiring::Wiring;
 
@@ -11,10 +12,8 @@ use machine::rig::wiring::Wiring;
 pub const RIGS: u64 = 8;
 /// End of all faults, microseconds of rig time.
 pub const CEASES_US: u64 = 16_000_000;
-/// Duration of a disturbance of door, emergency stop or air, microseconds: `fault_hold_ms` of [`WORLD`].
+/// Duration of a disturbance of door, emergency stop or air, microseconds: `fault_hold_ms` of [`Climate::world`].
 pub const DISTURBED_US: u64 = 3_000_000;
-/// Keys of the world that differ from the default: more defects, so that parts go to every bin.
-pub const WORLD: &str = "[defects]\nrate_pct = 25.0\n\n[mechanism]\nfault_hold_ms = 3000.0\n";
 
 /// Faults that happen once, at the part with the drawn number.
 const AT_A_PART: [&str; 10] = [
@@ -72,6 +71,8 @@ pub struct Scenario {
     pub faults: Vec<String>,
     /// Instants at which a safety input is disturbed, microseconds.
     pub disturbed_us: Vec<u64>,
+    /// Instants from which a contactor stays closed once it is closed, for [`DISTURBED_US`], microseconds.
+    pub welded_us: Vec<u64>,
     /// Whether a line may be deaf or slow for a while: outputs then stay on until the watchdogs of their modules
     /// expire.
     pub lines_disturbed: bool,
@@ -83,15 +84,16 @@ pub struct Scenario {
 
 impl Scenario {
     /// Draws the scenario of a seed; lots have at most `parts` parts.
-    pub fn of(seed: u64, parts: u64, wiring: &Wiring) -> Self {
+    pub fn of(seed: u64, parts: u64, wiring: &Wiring, climate: &Climate) -> Self {
         let mut dice = Dice::new(seed);
         let operator_dice = dice.apart();
-        let uncalibrated = dice.once_in(16);
+        let uncalibrated = dice.once_in(16) && climate.calibrates;
         let mut scenario = Self {
             rig: 1 + seed % RIGS,
             uncalibrated,
             faults: vec![format!("parts_seed={}", seed % (1 << 40))],
             disturbed_us: Vec::new(),
+            welded_us: Vec::new(),
             lines_disturbed: false,
             lives: lives(&mut dice, uncalibrated, parts),
             operator_dice,
@@ -106,7 +108,32 @@ impl Scenario {
                 scenario.faults.push(fault);
             }
         }
+        if climate.is_of_circuits() {
+            scenario.add_circuit_faults(&mut dice, wiring, climate);
+        }
         scenario
+    }
+
+    fn add_circuit_faults(&mut self, dice: &mut Dice, wiring: &Wiring, climate: &Climate) {
+        for _ in 0..dice.below(3) {
+            let at_us = dice.between(0, CEASES_US - DISTURBED_US);
+            let fault = climate.circuit_fault(dice);
+            if self.faults.iter().any(|it| it.starts_with(fault)) {
+                continue;
+            }
+            self.faults
+                .push(format!("{fault}={:.6}", at_us as f64 * 1e-6));
+            if fault.ends_with("_welded") {
+                self.welded_us.push(at_us);
+            }
+        }
+        if dice.once_in(2) {
+            for _ in 0..dice.between(1, 4) {
+                let window = window(dice);
+                let fault = climate.instrument_fault(dice, wiring, &window);
+                self.faults.push(fault);
+            }
+        }
     }
 
     fn add_world_fault(&mut self, dice: &mut Dice) {
@@ -145,17 +172,23 @@ fn lives(dice: &mut Dice, uncalibrated: bool, parts: u64) -> Vec<Life> {
         .collect()
 }
 
-/// Draws a fault of a line or a module, with the interval in which it acts.
-fn line_fault(dice: &mut Dice, wiring: &Wiring) -> String {
+/// Draws the window in which a fault acts, in seconds of rig time: `FROM..UNTIL`.
+fn window(dice: &mut Dice) -> String {
     let seconds = |us: u64| us as f64 * 1e-6;
     let from = dice.below(CEASES_US - 1_000_000);
     let until = (from + dice.between(50_000, 6_000_000)).min(CEASES_US);
-    let window = format!("{:.6}..{:.6}", seconds(from), seconds(until));
+    format!("{:.6}..{:.6}", seconds(from), seconds(until))
+}
+
+/// Draws a fault of a line or a module, with the interval in which it acts.
+fn line_fault(dice: &mut Dice, wiring: &Wiring) -> String {
+    let window = window(dice);
+    let from = window.split("..").next().unwrap_or_default();
     let module = &dice.one(&wiring.modules).name;
     let line = &dice.one(&wiring.lines).name;
     match dice.below(8) {
-        0 => format!("reset={module}@{:.6}", seconds(from)),
-        1 => format!("watchdog_trip={module}@{:.6}", seconds(from)),
+        0 => format!("reset={module}@{from}"),
+        1 => format!("watchdog_trip={module}@{from}"),
         2 => format!("silence={module}@{window}"),
         3 => format!("line_cut={line}@{window}"),
         4 => format!("port_lost={line}@{window}"),

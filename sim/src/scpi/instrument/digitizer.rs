@@ -15,6 +15,8 @@ pub(super) const CHANNELS: usize = 4;
 const HORIZONTAL: f64 = 10.0;
 /// Time to send one byte of a block, microseconds.
 const BYTE_US: f64 = 0.4;
+/// Limit of error of the clock of the samples, as a fraction.
+const CLOCK: f64 = 25e-6;
 /// Time after which automatic triggering ends without a trigger event, microseconds.
 const AUTO_US: u64 = 50_000;
 
@@ -84,6 +86,10 @@ const TABLE: &[Setting] = &[
 struct Capture {
     next_us: u64,
     step_us: u64,
+    /// Begin of the acquisition, the time from a sample to the next by the true clock, microseconds, and the samples so far.
+    start_us: u64,
+    true_step_us: f64,
+    taken: u64,
     points: usize,
     before: usize,
     /// Samples of every channel, oldest first, as converter codes.
@@ -147,9 +153,13 @@ impl Digitizer {
         };
         let offset = self.body.settings.number("time_offset") * 1e6 / step_us as f64;
         let before = (points as f64 * reference - offset).clamp(0.0, points as f64) as usize;
+        let clock = 1.0 + CLOCK * self.body.errors.of_clock();
         self.capture = Some(Capture {
             next_us: now_us + step_us,
             step_us,
+            start_us: now_us,
+            true_step_us: step_us as f64 * clock,
+            taken: 0,
             points,
             before,
             samples: VecDeque::with_capacity(points),
@@ -383,7 +393,7 @@ impl Instrument for Digitizer {
             false => capture.before,
         };
         let later = (capture.points - taken).saturating_sub(1) as u64;
-        Some(capture.next_us + later * capture.step_us)
+        Some(capture.due_us(capture.taken + 1 + later))
     }
 
     fn tick(&mut self, at: &mut Moment<'_>) {
@@ -411,11 +421,17 @@ impl Instrument for Digitizer {
 }
 
 impl Capture {
+    /// Returns the instant of the sample with this number, from 1, microseconds.
+    fn due_us(&self, number: u64) -> u64 {
+        self.start_us + (number as f64 * self.true_step_us).round() as u64
+    }
+
     /// Stores one sample; `above_v` is the height of the trigger source above the level, positive in the direction of
     /// the slope. Returns true when the record is complete.
     fn take(&mut self, codes: [u16; CHANNELS], above_v: f64, now_us: u64) -> bool {
         self.samples.push_back(codes);
-        self.next_us += self.step_us;
+        self.taken += 1;
+        self.next_us = self.due_us(self.taken + 1);
         let was_below = self.previous_v.replace(above_v).is_some_and(|it| it < 0.0);
         let crossed = was_below && above_v >= 0.0;
         let forced = self.force_us.is_some_and(|force_us| force_us <= now_us);

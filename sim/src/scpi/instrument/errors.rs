@@ -61,6 +61,14 @@ impl Errors {
         std::array::from_fn(|_| 2.0 * rng.random::<f64>() - 1.0)
     }
 
+    /// Returns the error of the clock as a fraction of its limit.
+    pub(super) fn of_clock(&self) -> f64 {
+        if self.exact {
+            return 0.0;
+        }
+        2.0 * stream(self.ranges, "clock").random::<f64>() - 1.0
+    }
+
     /// Draws from the standard normal distribution; 0 for an exact instrument.
     pub(super) fn normal(&mut self) -> f64 {
         if self.exact {

@@ -162,7 +162,8 @@ impl SsrBoard {
 
     /// Returns the source-measure unit as the socket sees it; `None` while it is not connected.
     pub(super) fn at_socket(&self) -> Option<Limited> {
-        if !self.connects(Out::SmuToOutput) || self.alternating.is_some() {
+        let is_open = !self.connects(Out::SmuToOutput) || self.is_lead_open();
+        if is_open || self.alternating.is_some() {
             return None;
         }
         let (volts, limit_a, own_ohm) = match self.smu_out {

@@ -104,6 +104,9 @@ impl SsrBoard {
             *ohms *= 1.0 + draw.half(table.resistor_error_pct / 100.0);
         }
         let line_seed = draw.below(1 << 32);
+        for shunt in [&mut table.line_shunt_ohm, &mut table.loop_shunt_mohm] {
+            *shunt *= 1.0 + draw.half(table.resistor_error_pct / 100.0);
+        }
         Self {
             line: Line::new(line_seed, mains.unrest()),
             contactors: Contactors::new(table.contactor_close_ms, table.contactor_open_ms),

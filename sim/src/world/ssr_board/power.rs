@@ -43,6 +43,10 @@ pub struct Troubles {
     pub socket_short: bool,
     /// The fuse between the AC source and the load of the line is blown; the loop has its own.
     pub line_dead: bool,
+    /// The fuse between the AC source and the load of the loop is blown.
+    pub loop_dead: bool,
+    /// A lead between the source-measure unit and the output is broken.
+    pub lead_open: bool,
 }
 
 impl Troubles {
@@ -60,6 +64,8 @@ impl Troubles {
             mirrors_stuck: lasts(Fault::MirrorsStuck),
             socket_short: lasts(Fault::SocketShort),
             line_dead: lasts(Fault::LineDead),
+            loop_dead: lasts(Fault::LoopDead),
+            lead_open: lasts(Fault::LeadOpen),
         }
     }
 }
@@ -125,6 +131,11 @@ impl SsrBoard {
         self.energise();
     }
 
+    /// Checks whether a fault keeps the source-measure unit from the output.
+    pub(super) fn is_lead_open(&self) -> bool {
+        self.contactors.troubles.lead_open
+    }
+
     /// Checks whether a fault shorts the output pins.
     pub(super) fn is_shorted(&self) -> bool {
         self.contactors.troubles.socket_short
@@ -182,17 +193,19 @@ impl SsrBoard {
     fn load(&self) -> Option<Load> {
         let table = &self.table;
         let [line, own_loop] = [LINE, LOOP].map(|place| self.contactors.each[place].is_closed());
+        let fused = |ohms: f64, is_blown: bool| match is_blown {
+            true => ohms + table.blown_gohm * 1e9,
+            false => ohms,
+        };
+        let troubles = &self.contactors.troubles;
         match (line, own_loop) {
             (_, true) => Some(Load {
-                ohms: table.loop_ohm,
+                ohms: fused(table.loop_ohm, troubles.loop_dead),
                 henries: 0.0,
                 shunt_ohm: table.loop_shunt_mohm * 1e-3,
             }),
             (true, false) => Some(Load {
-                ohms: match self.contactors.troubles.line_dead {
-                    true => table.line_ohm + table.blown_gohm * 1e9,
-                    false => table.line_ohm,
-                },
+                ohms: fused(table.line_ohm, troubles.line_dead),
                 henries: match self.commands.is_on(Out::LoadSelect) {
                     true => table.line_henry,
                     false => 0.0,

@@ -170,29 +170,41 @@ pub fn turn_on_voltage(
         .with_random_bounds("resolution", bits_v / 2.0)
 }
 
-/// Returns the error of the source voltage that calibrates the clamped channel, half width, as a share.
-fn source_share(plan: &Plan, ac: &AcPlan) -> f64 {
+/// Returns the budget of a drop at the rated current, V; `of_current_v` is the share of it that grows with the current,
+/// V: its change for a relative change of the current.
+///
+/// The same source voltage shows the gain of the voltage and, through the ratio of the references, that of the current: an
+/// error of it scales both alike and leaves the slope of the drop as it is.
+pub fn line_drop(
+    plan: &Plan,
+    ac: &AcPlan,
+    on: &OnState,
+    (value_v, of_current_v): (f64, f64),
+) -> Budget {
+    let budget = Budget::default().with_random("noise", COLD * on.noise_v);
+    if on.referenced.is_none() {
+        let gain = gain(ac, false);
+        return budget
+            .with_bounds("gain", gain * value_v)
+            // An offset has opposite signs in the two polarities, and their mean cancels it but for a twentieth.
+            .with_bounds("offset", 0.05 * ac.offset_v(ac.drop_scale_v))
+            .with_bounds("current gain", gain * of_current_v)
+            .with_bounds("shunt of the loop", SHUNT_ERROR * of_current_v);
+    }
     let (source, level_v) = (&plan.load.source, ac.reference_v());
-    (source.gain(level_v) + source.offset) / level_v
-}
-
-/// Returns the budget of a drop at the rated current, V.
-pub fn line_drop(plan: &Plan, ac: &AcPlan, on: &OnState, value_v: f64) -> Budget {
-    let gain_share = match on.referenced.is_some() {
-        true => source_share(plan, ac),
-        false => gain(ac, false),
-    };
-    let offset_v = match on.referenced.is_some() {
-        true => LINEARITY * SCREEN * ac.drop_scale_v * LEFT,
-        // An offset has opposite signs in the two polarities, and their mean cancels it but for a twentieth.
-        false => 0.05 * ac.offset_v(ac.drop_scale_v),
-    };
-    let current = (gain(ac, on.referenced.is_some()) + SHUNT_ERROR) * on.ohm * SQRT_2 * ac.rated_a;
-    Budget::default()
-        .with_bounds("gain", gain_share * value_v)
-        .with_bounds("offset", offset_v)
-        .with_bounds("current gain", current)
-        .with_random("noise", COLD * on.noise_v)
+    let of_source_v = (value_v - of_current_v) / level_v;
+    let shunt_v = SQRT_2 * ac.rated_a * LOOP_SHUNT_OHM;
+    let curve = bent(ac.looped().shunt_v, shunt_v);
+    budget
+        .with_bounds("gain of the source", source.gain(level_v) * of_source_v)
+        .with_bounds("offset of the source", source.offset * of_source_v)
+        .with_bounds("linearity", LINEARITY * SCREEN * ac.drop_scale_v * LEFT)
+        .with_bounds("gain of the divider", GAIN_LEFT * of_current_v)
+        .with_bounds("gain of the shunt", GAIN_LEFT * of_current_v)
+        .with_bounds("linearity of the shunt", curve * of_current_v)
+        .with_bounds("reference", REFERENCE * of_current_v)
+        .with_bounds("shunt of the line", SHUNT_ERROR * of_current_v)
+        .with_bounds("shunt of the loop", SHUNT_ERROR * of_current_v)
 }
 
 /// Returns the budget of the mean voltage of the conducting output (DC offset), mV. The curve of a channel is odd, as
@@ -229,10 +241,11 @@ pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
         .with_random("noise", WARMED * on.noise_v * 1e3)
 }
 
-/// Returns the budget of a distortion, mV, from that of a drop of the same size. The mains, whose harmonics and
-/// amplitude differ from the nominal ones, moves the times for which the output waits for its voltage.
-pub fn distortion(drop: &Budget, value_v: f64) -> Budget {
-    scaled(drop, 1e3).with("mains", WAITS * value_v * 1e3)
+/// Returns the budget of a distortion, mV: that of a drop of the same size, which does not depend on the current. The
+/// mains, whose harmonics and amplitude differ from the nominal ones, moves the instants at which the output waits.
+pub fn distortion(plan: &Plan, ac: &AcPlan, on: &OnState) -> Budget {
+    let drop = line_drop(plan, ac, on, (on.distortion_v, 0.0));
+    scaled(&drop, 1e3).with("mains", WAITS * on.distortion_v * 1e3)
 }
 
 /// Returns a budget in another unit.

@@ -85,6 +85,33 @@ pub struct AcPlan {
     pub source: Accuracy,
 }
 
+/// Circuit through which the source feeds the output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Circuit {
+    /// The line, with the voltage of the mains.
+    Line,
+    /// The loop, with the rated current.
+    Loop,
+}
+
+impl Circuit {
+    /// Returns the load, shunt included, ohm.
+    pub const fn ohm(self) -> f64 {
+        match self {
+            Self::Line => LINE_OHM,
+            Self::Loop => LOOP_OHM,
+        }
+    }
+
+    /// Returns the shunt, ohm.
+    pub const fn shunt_ohm(self) -> f64 {
+        match self {
+            Self::Line => LINE_SHUNT_OHM,
+            Self::Loop => LOOP_SHUNT_OHM,
+        }
+    }
+}
+
 /// Scales and length of one record of the digitizer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scales {
@@ -98,10 +125,8 @@ pub struct Scales {
     pub record_s: f64,
     /// Number of samples.
     pub points: f64,
-    /// Load of the circuit, shunt included, ohm.
-    pub load_ohm: f64,
-    /// Shunt of the circuit, ohm.
-    pub shunt_ohm: f64,
+    /// Circuit that feeds the output.
+    pub circuit: Circuit,
 }
 
 impl AcPlan {
@@ -136,6 +161,14 @@ impl AcPlan {
     /// Returns the peak of the line, V.
     pub fn peak_v(&self) -> f64 {
         SQRT_2 * self.mains_v
+    }
+
+    /// Returns the nominal peak of the source in a circuit, V.
+    pub fn circuit_peak_v(&self, circuit: Circuit) -> f64 {
+        match circuit {
+            Circuit::Line => self.peak_v(),
+            Circuit::Loop => SQRT_2 * self.loop_v(),
+        }
     }
 
     /// Returns the rise of the nominal voltage of the line at its zero, V/s.
@@ -222,8 +255,7 @@ impl AcPlan {
             shunt_v: ROOM * peak_a * LOOP_SHUNT_OHM / HALF_SCREEN,
             record_s: LOOP_S.max(0.2 + 1.1 * self.half_s()) / (1.0 - BEFORE),
             points: 6e3,
-            load_ohm: LOOP_OHM,
-            shunt_ohm: LOOP_SHUNT_OHM,
+            circuit: Circuit::Loop,
         }
     }
 
@@ -244,8 +276,7 @@ impl AcPlan {
             shunt_v: ROOM * load_a * LINE_SHUNT_OHM / HALF_SCREEN,
             record_s,
             points,
-            load_ohm: LINE_OHM,
-            shunt_ohm: LINE_SHUNT_OHM,
+            circuit: Circuit::Line,
         }
     }
 }

@@ -3,7 +3,8 @@
 use super::bins;
 use super::parameter::Parameter;
 use crate::dut::Reason;
-use crate::dut::finding::Entry;
+use crate::dut::finding::{Entry, Finding as AnyFinding};
+use crate::dut::reason::Code;
 use crate::gauge::Side;
 
 /// Why a part fails, or why it could not be judged.
@@ -53,6 +54,10 @@ pub enum Finding {
     WrongMains,
     /// The line brings neither voltage nor current to the output: fuse, load or output of the source.
     LineDead,
+    /// The loop brings neither voltage nor current to the output: fuse, contactor, load, wire or output of the source.
+    LoopDead,
+    /// The socket is shorted without a part's output.
+    SocketShorted,
     /// A reference of the fixture reads more than a tenth off its value.
     WrongReference,
     /// An instrument has delivered other values than its programs return; detail: the instrument.
@@ -61,7 +66,7 @@ pub enum Finding {
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 26] = [
         Self::PinOpen,
         Self::ProbeChainOpen,
         Self::Turned,
@@ -84,6 +89,8 @@ impl Finding {
         Self::Contactor,
         Self::WrongMains,
         Self::LineDead,
+        Self::LoopDead,
+        Self::SocketShorted,
         Self::WrongReference,
         Self::NotDelivered,
     ];
@@ -129,9 +136,27 @@ impl Finding {
             Self::Contactor => Entry::void("ssr_contactor"),
             Self::WrongMains => Entry::void("ssr_wrong_mains"),
             Self::LineDead => Entry::void("ssr_line_dead"),
+            Self::LoopDead => Entry::void("ssr_loop_dead"),
+            Self::SocketShorted => Entry::void("ssr_socket_shorted"),
             Self::WrongReference => Entry::void("ssr_wrong_reference"),
             Self::NotDelivered => Entry::void("ssr_not_delivered"),
         }
+    }
+
+    /// Returns the finding of a reason; `None` for a reason that is no finding about a solid-state relay.
+    pub fn of(reason: &Reason) -> Option<Self> {
+        match reason.code {
+            Code::Finding(AnyFinding::Ssr(finding)) => Some(finding),
+            _other => None,
+        }
+    }
+
+    /// Returns true when a short in the socket, or an open circuit of the output, may look alike.
+    pub const fn is_about_output(self) -> bool {
+        !matches!(
+            self,
+            Self::InputOpen | Self::InputShorted | Self::InputConductsReversed
+        )
     }
 
     /// Returns the reason of the finding, with `detail`: the names that the text shows.

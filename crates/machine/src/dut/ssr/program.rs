@@ -367,7 +367,8 @@ fn ac_shows(scales: &Scales, channel: f64) -> Vec<Shown> {
     } else if channel == DIVIDED_CHANNEL {
         vec![volts("output_voltage", ac_plan::DIVIDER, 0.0)]
     } else if channel == SHUNT_CHANNEL {
-        load(scales.load_ohm / scales.shunt_ohm, 0.0, scales.load_ohm)
+        let (ohm, shunt_ohm) = (scales.circuit.ohm(), scales.circuit.shunt_ohm());
+        load(ohm / shunt_ohm, 0.0, ohm)
     } else {
         vec![volts("clamped_voltage", 1.0, 0.0)]
     }

@@ -5,11 +5,13 @@
 //! | `bodies` | every body lies in the bin that its row names, or an alarm declares it lost; every row has a body, no body two rows |
 //! | `values` | every value belongs to the body of its row; no defect in the pass bin, no good part in the bin of a defect |
 //! | `motion` | no driven motion begins after a stop, while a safety input is open, or without a controller |
+//! | `contactors` | no contactor stays closed after a kill, after the end of a life, or while a safety input is open |
 //! | `endings` | every life ends, an alarm names every trouble, and production resumes after the faults |
 //!
 //! Touching bodies and overdriven coils need no rule here: the rig itself lists them.
 
 mod bodies;
+mod contactors;
 mod endings;
 mod motion;
 #[cfg(test)]
@@ -19,7 +21,7 @@ mod values;
 use super::life::{EPOCH_US, EndedLife};
 use crate::lot::Admitted;
 use history::{Alarm, Moment, Part};
-use rigsim::truth::{BodyTruth, Overdrive};
+use rigsim::truth::{BodyTruth, ContactMove, Overdrive};
 use units::Span;
 
 /// A case to judge: everything that the rules need. All times are microseconds of rig time, which runs on over all
@@ -36,6 +38,12 @@ pub struct Case {
     pub touched: Vec<String>,
     /// Coils driven in a supply range above the commanded one.
     pub overdrives: Vec<Overdrive>,
+    /// Moves of the main contacts of contactors.
+    pub contact_moves: Vec<ContactMove>,
+    /// Instants from which a contactor stayed closed once it was closed.
+    pub welded_us: Vec<u64>,
+    /// Time within which the host watchdog switches the outputs off.
+    pub watchdog: Span,
     /// Rows of parts in order of judgement, reference parts included.
     pub rows: Vec<Part>,
     /// Alarms in order of time.
@@ -68,6 +76,7 @@ impl Case {
         violations.extend(bodies::violations(self));
         violations.extend(values::violations(self));
         violations.extend(motion::violations(self));
+        violations.extend(contactors::violations(self));
         violations.extend(endings::violations(self));
         violations
     }

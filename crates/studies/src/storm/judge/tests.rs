@@ -8,7 +8,7 @@ use crate::storm::operator::Answered;
 use app::exit::{Cause, Exit};
 use history::{Alarm, AlarmState, Moment, Part};
 use machine::dut::em_relay::Parameter;
-use rigsim::truth::{BodyTruth, Overdrive, PartTruth, Place};
+use rigsim::truth::{BodyTruth, ContactMove, Overdrive, PartTruth, Place};
 use serde_json::json;
 use units::{RigTime, Span};
 
@@ -102,6 +102,15 @@ fn alarm(lot: &str, code: &str, raised_s: u64) -> Alarm {
     }
 }
 
+fn contactor(moves: &[(u64, bool)]) -> Vec<ContactMove> {
+    let moves = moves.iter().map(|(t_us, closed)| ContactMove {
+        t_us: *t_us,
+        contactor: "line_contactor",
+        closed: *closed,
+    });
+    moves.collect()
+}
+
 /// Returns a case of two lives that breaks no rule. The first tests a good part, drops another one and declares it; the
 /// operator aborts and the program ends. The second life completes.
 fn sound() -> Case {
@@ -117,6 +126,14 @@ fn sound() -> Case {
         driven: vec![(S, "escapement"), (17 * S, "sort_axis"), (31 * S, "sort_z")],
         touched: Vec::new(),
         overdrives: Vec::new(),
+        contact_moves: contactor(&[
+            (10 * S, true),
+            (11 * S, false),
+            (40 * S, true),
+            (41 * S, false),
+        ]),
+        welded_us: Vec::new(),
+        watchdog: Span::ms(1_000),
         rows: vec![
             row("one", 1, 3, "pass", "pass", Some(7)),
             row("one", 2, 9, "fail", "voltage", None),
@@ -409,4 +426,33 @@ fn a_production_that_stays_down_is_found() {
         case.alarms.push(alarm("two", "bus_trouble", 59));
     };
     found(held, "production did not resume");
+}
+
+#[test]
+fn a_contactor_that_stays_closed_is_found() {
+    let closed = |from: u64, to: u64| contactor(&[(from, true), (to, false)]);
+    found(
+        |case| case.contact_moves = closed(19 * S, 21 * S + 11_000),
+        "line_contactor was closed after the end of one",
+    );
+    found(
+        |case| case.contact_moves = contactor(&[(59 * S, true)]),
+        "line_contactor was closed after the end of two",
+    );
+    found(
+        |case| {
+            case.disturbed_us = vec![40 * S];
+            case.contact_moves = closed(39 * S, 40 * S + 270_000);
+        },
+        "line_contactor was closed while a safety input was open",
+    );
+    let mut restarted = sound();
+    restarted.lives[1].began_us = 20 * S + 500_000;
+    restarted.disturbed_us = Vec::new();
+    restarted.contact_moves = closed(19 * S, 21 * S + 11_000);
+    assert_eq!(restarted.violations(), Vec::<String>::new());
+    let mut welded = sound();
+    welded.contact_moves = closed(19 * S, 22 * S);
+    welded.welded_us = vec![19 * S + 500_000];
+    assert_eq!(welded.violations(), Vec::<String>::new());
 }

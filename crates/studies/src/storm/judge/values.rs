@@ -5,7 +5,8 @@ use super::Case;
 use super::bodies::owners;
 use crate::bins::bin_of;
 use history::Part;
-use machine::dut::em_relay::Parameter;
+use machine::dut::Characteristic;
+use machine::rig::bin::Bin;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
@@ -23,9 +24,10 @@ pub fn violations(case: &Case) -> Vec<String> {
             continue;
         }
         let truth = serde_json::to_value(&body.part).unwrap_or_default();
-        let readings: Vec<Reading> = Parameter::ALL
+        let readings: Vec<Reading> = case
+            .limits
             .iter()
-            .filter_map(|parameter| Reading::of(*parameter, row, &truth))
+            .filter_map(|(of, _)| Reading::of(*of, row, &truth))
             .collect();
         let found = foreign_value(&readings, &body.part)
             .into_iter()
@@ -37,50 +39,61 @@ pub fn violations(case: &Case) -> Vec<String> {
 
 /// A measured value and its truth.
 struct Reading {
-    parameter: Parameter,
+    of: Characteristic,
     value: f64,
     expanded: f64,
     truth: f64,
 }
 
 impl Reading {
-    fn of(parameter: Parameter, row: &Part, truth: &Value) -> Option<Self> {
-        let key = parameter.name();
+    fn of(of: Characteristic, row: &Part, truth: &Value) -> Option<Self> {
+        let key = of.key();
         Some(Self {
-            parameter,
+            of,
             value: row.values.get(key)?.as_f64()?,
             expanded: row.uncertainty.get(key)?.as_f64()?,
             truth: truth[key].as_f64()?,
         })
     }
 
-    /// Returns the bin for parts that fail this parameter.
-    fn bin(&self) -> &'static str {
-        self.parameter.facts().definition.bin.name()
+    /// Returns the bin for parts that fail this characteristic.
+    fn bin(&self) -> Bin {
+        self.of.bin()
     }
 }
 
 fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
-    // The resistance of an unstable contact differs at every closure: it has no single truth.
-    let unstable = part.defect == Some("unstable_contact");
     let far = |it: &&Reading| {
-        let defined = !(unstable && it.bin() == "contact");
+        let defined = part.defect.is_none_or(|defect| has_truth(defect, it));
         defined && (it.value - it.truth).abs() > FOREIGN_K * it.expanded
     };
     let it = readings.iter().find(far)?;
-    let (key, value, truth, u) = (it.parameter.name(), it.value, it.truth, it.expanded);
+    let (key, value, truth, u) = (it.of.key(), it.value, it.truth, it.expanded);
     Some(format!(
         "{key} {value} +- {u} cannot be of a part with {truth}"
     ))
 }
 
+/// Returns true when a characteristic of a part with this defect has a single true value.
+fn has_truth(defect: &str, reading: &Reading) -> bool {
+    match defect {
+        // The resistance differs at every closure.
+        "unstable_contact" => reading.bin().name() != "contact",
+        // It depends on the phase of the line at which the control comes.
+        "no_zero_cross" => !["t_on_us", "v_zc_v"].contains(&reading.of.key()),
+        // It doubles every ten kelvins, and the part cools.
+        "leaky_junction" => reading.of.key() != "i_leak_hot_ua",
+        // It turns on later than a search waits near the threshold, and is hardly on when a pulse ends.
+        "slow_turn_on" => !["v_on_v", "v_off_v", "t_off_us"].contains(&reading.of.key()),
+        "slow_turn_off" => reading.of.key() != "v_off_v",
+        _one => true,
+    }
+}
+
 fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
     // Distance of the truth from the nearer limit; positive inside the range.
     let inside = |it: &Reading| {
-        let own = case
-            .limits
-            .iter()
-            .find(|(known, _)| *known == it.parameter.into());
+        let own = case.limits.iter().find(|(known, _)| *known == it.of);
         own.map_or(f64::INFINITY, |(_, range)| {
             (it.truth - range.start()).min(range.end() - it.truth)
         })
@@ -92,12 +105,17 @@ fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) ->
         ("pass", None) => readings
             .iter()
             .find(beyond)
-            .map(|it| format!("passed with a true {} of {}", it.parameter.name(), it.truth)),
+            .map(|it| format!("passed with a true {} of {}", it.of.key(), it.truth)),
         (_, Some(defect)) => {
             let right = bin_of(defect).unwrap_or("");
             let named = row.bin.as_deref().unwrap_or("");
             let near = readings.iter().any(|it| !clear(it) && !beyond(&it));
-            let also_beyond = || readings.iter().filter(beyond).any(|it| it.bin() == named);
+            let also_beyond = || {
+                readings
+                    .iter()
+                    .filter(beyond)
+                    .any(|it| it.bin().name() == named)
+            };
             (named != right && !near && !also_beyond())
                 .then(|| format!("{defect} belongs to {right}, its row says {named}"))
         }

@@ -243,25 +243,25 @@ impl Smu {
         match self.body.settings.choice("sense") {
             "CURRent" => {
                 let range = select(mean.amps, &AMPS);
-                let (gain, offset) = current_accuracy(range);
+                let (gain, offset, noise) = current_accuracy(range);
                 let accuracy = Accuracy {
                     gain,
                     offset,
-                    noise: 0.075 * offset * quiet,
+                    noise: noise * quiet,
                 };
                 within(errors.apply(2, accuracy, mean.amps), range)
             }
             "VOLTage" => {
                 let range = select(volts, &VOLTS);
-                let offset = match range {
-                    ..=0.2 => 2e-4,
-                    ..=2.0 => 3e-4,
-                    _ => 5e-5 * range,
+                let (offset, noise) = match range {
+                    ..=0.2 => (2e-4, 5e-6),
+                    ..=2.0 => (3e-4, 1e-5),
+                    _ => (5e-5 * range, 2.5e-6 * range),
                 };
                 let accuracy = Accuracy {
                     gain: 1.5e-4,
                     offset,
-                    noise: 0.025 * offset * quiet,
+                    noise: noise * quiet,
                 };
                 within(errors.apply(3, accuracy, volts), range)
             }
@@ -439,17 +439,17 @@ fn within(value: f64, range: f64) -> f64 {
     }
 }
 
-/// Returns one-year gain and offset limits of the current measurement.
-fn current_accuracy(range: f64) -> (f64, f64) {
+/// Returns one-year limits of gain and offset of the current measurement, and its noise at one period.
+fn current_accuracy(range: f64) -> (f64, f64, f64) {
     match range {
-        ..=1e-8 => (1e-3, 5e-11),
-        ..=1e-7 => (6e-4, 1e-10),
-        ..=1e-6 => (2.5e-4, 3e-10),
-        ..=1e-5 => (2.5e-4, 7e-10),
-        ..=1e-4 => (2e-4, 6e-9),
-        ..=1e-3 => (2e-4, 6e-8),
-        ..=1e-2 => (2e-4, 6e-7),
-        ..=1e-1 => (2.5e-4, 6e-6),
-        _ => (3e-4, 5e-4),
+        ..=1e-8 => (1e-3, 5e-11, 4e-12),
+        ..=1e-7 => (6e-4, 1e-10, 8e-12),
+        ..=1e-6 => (2.5e-4, 3e-10, 2e-11),
+        ..=1e-5 => (2.5e-4, 7e-10, 5e-11),
+        ..=1e-4 => (2e-4, 6e-9, 5e-10),
+        ..=1e-3 => (2e-4, 6e-8, 5e-9),
+        ..=1e-2 => (2e-4, 6e-7, 5e-8),
+        ..=1e-1 => (2.5e-4, 6e-6, 5e-7),
+        _ => (3e-4, 5e-4, 3e-5),
     }
 }

@@ -182,6 +182,22 @@ fn a_blown_fuse_of_the_line_spares_the_loop() {
 }
 
 #[test]
+fn a_blown_fuse_of_the_loop_spares_the_line() {
+    let mut hand = rig("ac_zero_cross", EUROPE, 3, QUIET);
+    hand.rig.inject("loop_dead").expect("a fault");
+    hand.line(EUROPE);
+    assert!(socket_v(&mut hand) > 200.0);
+    hand.set("line_contactor", false);
+    hand.wait(40.0);
+    hand.tell(AC, "VOLT:AC 24;:CURR:LIM 8");
+    hand.set("loop_contactor", true);
+    hand.control(5.0);
+    hand.wait(200.0);
+    let amps = hand.value(AC, "MEAS:CURR:AC?");
+    assert!(amps < 0.02, "{amps}");
+}
+
+#[test]
 fn equal_seeds_give_equal_bytes() {
     let heard = |seed: u64| {
         let mut hand = rig("ac_zero_cross", EUROPE, seed, "");

@@ -20,7 +20,7 @@ const PINS: [(DigitalIn, &str); 4] = [
 ];
 
 /// Sets the outputs that are on, waits for the relays, reads every input.
-fn look(points: &Points, on: &[DigitalOut]) -> [Act; 3] {
+pub fn look(points: &Points, on: &[DigitalOut]) -> [Act; 3] {
     [
         Act::Set(points.outputs(on)),
         Act::Wait(RELAY),

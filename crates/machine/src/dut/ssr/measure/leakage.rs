@@ -5,18 +5,22 @@ use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
 use super::stage::Stage;
 use super::state::{Next, State};
+use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::accuracy::leakage;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::{CurrentRange, DcPlan, Plan};
 use crate::dut::ssr::points::{Device, DigitalOut, Points};
 use crate::dut::ssr::references::OpenFixture;
-use crate::instrument::act::Act;
+use crate::instrument::act::{Act, Read};
 use crate::instrument::query::Query;
+use crate::rig::point::Point;
 use units::{RigTime, Unit};
 
 /// Share of the current of a blocked output that the open fixture may take.
 const OPEN: f64 = 0.1;
+/// Largest difference of the voltage at the socket from that of the source, as a share of the rated one.
+const FED: f64 = 0.2;
 
 fn range(stage: DcStage, dc: &DcPlan) -> (Parameter, &CurrentRange, Finding) {
     match stage == DcStage::HotLeakage {
@@ -46,6 +50,7 @@ pub fn acts(
         queries.extend(state.prepare_pulses(plan, points));
     }
     acts.push(Act::Query(queries));
+    acts.push(Act::Read(Read::points([Point::Analog(points.residual)])));
     acts
 }
 
@@ -113,6 +118,17 @@ pub fn conclude_open(
     Ok(Next::Planned)
 }
 
+/// Returns true when the socket has the voltage of the last direction: an open lead of the source would show no leakage.
+fn has_voltage(dc: &DcPlan, given: &Given) -> bool {
+    let last_v = match directions(dc) {
+        1 => dc.rated_v,
+        _both => -dc.rated_v,
+    };
+    let residual = given.readings.analog(given.points.residual).last();
+    let volts = residual.and_then(|it| it.good());
+    volts.is_some_and(|it| (it - last_v).abs() < FED * dc.rated_v)
+}
+
 /// Concludes a leakage: the greater one of both directions.
 pub fn conclude(
     state: &mut State,
@@ -120,7 +136,7 @@ pub fn conclude(
     plan: &Plan,
     dc: &DcPlan,
     given: &Given,
-) -> Result<Next, NotDelivered> {
+) -> Result<Next, Reason> {
     let (of, range, finding) = range(stage, dc);
     let device = Device::SmuOut;
     let all = given.lists(device, directions(dc))?;
@@ -140,6 +156,9 @@ pub fn conclude(
         }
     }
     let (ampere, moved) = most;
+    if !range.is_limited(ampere) && !has_voltage(dc, given) {
+        return Err(Finding::LoopDead.into());
+    }
     if range.is_limited(ampere) {
         state.suspected = plan.bounds(of).then_some(finding);
         return Ok(Next::Insert(Stage::Dc(DcStage::StuckShort)));

@@ -4,7 +4,7 @@
 use super::*;
 use crate::dut::Procedure;
 use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut};
-use crate::dut::ssr::tests::line_bench::{LineBench, Part, ZERO_CROSS, good, recipe};
+use crate::dut::ssr::tests::line_bench::{LineBench, Part, RANDOM, ZERO_CROSS, good, recipe};
 
 fn tested(text: &str, changes: &[(&str, &str)], part: Part) -> (LineBench, Procedure) {
     let recipe = recipe(text, changes);
@@ -148,6 +148,45 @@ fn a_line_that_dies_in_a_leakage_fails_no_part() {
             );
         }
     }
+}
+
+#[test]
+fn a_loop_that_opens_in_its_record_fails_no_part() {
+    for (zero_cross, text) in [(true, ZERO_CROSS), (false, RANDOM)] {
+        let part = changed(|it| it.zero_cross = zero_cross);
+        let mut bench = LineBench::with(part, &recipe(text, &[]));
+        assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
+        for opens_ms in (0..210).step_by(7) {
+            bench.part.loop_opens_s = f64::from(opens_ms) / 1e3;
+            let ended = ended(&bench.tested(false));
+            assert_eq!(ended, void("ssr_loop_dead", ""), "after {opens_ms} ms");
+        }
+        // Around a last zero of the current, an open loop changes nothing.
+        for tenths_ms in (2_100..2_170).step_by(4) {
+            bench.part.loop_opens_s = f64::from(tenths_ms) / 1e4;
+            let verdict = bench.tested(false).verdict();
+            let is_known = matches!(verdict, Verdict::Pass | Verdict::Void(_));
+            assert!(is_known, "after {tenths_ms} tenths: {verdict:?}");
+        }
+    }
+}
+
+#[test]
+fn a_part_that_misses_a_polarity_in_the_loop_fails() {
+    for dead in [1.0, -1.0] {
+        let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &[]));
+        bench.part.dead_in_loop = dead;
+        let test = bench.tested(false);
+        let code = Some(("ssr_half_wave", String::new()));
+        assert_eq!(ended(&test), ("fail", code), "{dead}");
+    }
+}
+
+#[test]
+fn a_short_in_the_socket_fails_no_part() {
+    let part = changed(|it| it.is_socket_shorted = true);
+    let (_, test) = tested(ZERO_CROSS, &[], part);
+    assert_eq!(ended(&test), void("ssr_socket_shorted", ""));
 }
 
 #[test]

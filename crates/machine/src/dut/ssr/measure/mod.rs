@@ -4,8 +4,9 @@
 //! pins -> short check -> input -> leakage -> blocks at V_off -> conducts at V_on -> thresholds -> times
 //!      -> resistance -> leakage again -> sources off -> discharge -> verdict
 //! ```
-//! A finding ends the measuring stages; a figure outside its limit does not. Every test ends with the discharge,
-//! whatever has ended it. When a job fails, the fixture disconnects the sources first, by modules whose watchdog needs
+//! A finding ends the measuring stages; a figure outside its limit does not. A finding about the output fails the part
+//! only after [`known`] states of the fixture have shown no other cause. Every test ends with the discharge, whatever has
+//! ended it. When a job fails, the fixture disconnects the sources first, by modules whose watchdog needs
 //! no instrument, and the instruments follow. A socket that is not proven to be below 30 V is trouble of the rig.
 //!
 //! A result inside the guard band, and in a thorough test every result, is measured again at once, `slow_repeats` times.
@@ -17,6 +18,7 @@ mod dc_stage;
 mod discharge;
 mod given;
 mod input;
+mod known;
 mod leakage;
 pub(super) mod line;
 pub(super) mod ramp;
@@ -146,7 +148,9 @@ impl Test {
             }
             return;
         }
-        if self.state.record.stopped() {
+        if self.state.doubts(self.stage) {
+            self.stages = VecDeque::from([Stage::Known, Stage::SourcesOff, Stage::Discharge]);
+        } else if self.state.record.stopped() {
             self.stages = VecDeque::from([Stage::SourcesOff, Stage::Discharge]);
         } else if let Next::Insert(stage) = next {
             self.stages.push_front(stage);

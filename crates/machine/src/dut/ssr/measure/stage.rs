@@ -20,6 +20,8 @@ pub enum Stage {
     Dc(DcStage),
     /// A stage that only parts for an AC load pass.
     Ac(AcStage),
+    /// Known states of the fixture, before a finding about the output fails the part.
+    Known,
     /// All sources off.
     SourcesOff,
     /// Everything disconnected and the socket discharged.
@@ -108,7 +110,7 @@ impl Stage {
             OutputPlan::Ac(_) => AcStage::ALL.map(Self::Ac).into(),
         };
         let first = [Self::Contact, Self::Short, Self::Input, Self::Turned];
-        let last = [Self::SourcesOff, Self::Discharge];
+        let last = [Self::Known, Self::SourcesOff, Self::Discharge];
         first.into_iter().chain(own).chain(last).collect()
     }
 
@@ -119,6 +121,7 @@ impl Stage {
             Self::Input | Self::Turned => Label::Input,
             Self::Dc(stage) => stage.label(),
             Self::Ac(stage) => stage.label(),
+            Self::Known => Label::References,
             Self::SourcesOff | Self::Discharge => Label::Discharge,
         }
     }
@@ -144,7 +147,12 @@ impl Stage {
             Self::Input => &[Parameter::InputCurrent, Parameter::ReverseCurrent],
             Self::Dc(stage) => stage.measures(),
             Self::Ac(stage) => stage.measures(),
-            Self::Contact | Self::Short | Self::Turned | Self::SourcesOff | Self::Discharge => &[],
+            Self::Contact
+            | Self::Short
+            | Self::Turned
+            | Self::Known
+            | Self::SourcesOff
+            | Self::Discharge => &[],
         }
     }
 }

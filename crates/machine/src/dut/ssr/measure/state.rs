@@ -3,11 +3,11 @@
 
 use super::board::Position;
 use super::dc_stage::DcStage;
-use super::given::{Given, NotDelivered};
+use super::given::Given;
 use super::line::stage::AcStage;
 use super::line::{self, Level, conforms, looped, references, staircase, train};
 use super::stage::Stage;
-use super::{conformity, contact, discharge, input, leakage, resistance, threshold, timing};
+use super::{conformity, contact, discharge, input, known, leakage, resistance, threshold, timing};
 use crate::dut::Reason;
 use crate::dut::record::TestRecord;
 use crate::dut::ssr::Finding;
@@ -40,6 +40,8 @@ pub struct State {
     pub shown: references::Shown,
     /// Finding that holds unless the next stage finds another cause.
     pub suspected: Option<Finding>,
+    /// Failure of the output that holds unless known states of the fixture show another cause.
+    pub doubted: Option<Reason>,
     /// Thresholds of earlier parts.
     pub learned: Learned,
     /// Search under way.
@@ -138,6 +140,7 @@ impl State {
             Stage::Turned => input::turned_acts(self, plan, points),
             Stage::Dc(stage) => self.dc_acts(stage, plan, points),
             Stage::Ac(stage) => self.ac_acts(stage, plan, points),
+            Stage::Known => known::acts(self, plan, points),
             Stage::SourcesOff => discharge::off_acts(self, points),
             Stage::Discharge => discharge::acts(self, points),
         }
@@ -207,6 +210,7 @@ impl State {
             Stage::Turned => input::conclude_turned(self, given)?,
             Stage::Dc(stage) => self.conclude_dc(stage, plan, (given, now))?,
             Stage::Ac(stage) => self.conclude_ac(stage, plan, (given, now))?,
+            Stage::Known => known::conclude(self, plan, given)?,
             Stage::SourcesOff => Next::Planned,
             Stage::Discharge => discharge::conclude(self, given),
         })
@@ -217,12 +221,12 @@ impl State {
         stage: DcStage,
         plan: &Plan,
         (given, now): (&Given, RigTime),
-    ) -> Result<Next, NotDelivered> {
+    ) -> Result<Next, Reason> {
         let dc = dc_of(plan);
-        match stage {
+        let next = match stage {
             DcStage::OpenFixture => leakage::conclude_open(self, dc, given, now),
             DcStage::ColdLeakage | DcStage::HotLeakage => {
-                leakage::conclude(self, stage, plan, dc, given)
+                return leakage::conclude(self, stage, plan, dc, given);
             }
             DcStage::StuckShort => Ok(contact::conclude_stuck(self, given)),
             DcStage::Blocks => conformity::conclude_blocks(self, plan, dc, given),
@@ -232,7 +236,8 @@ impl State {
             DcStage::Threshold(direction) => threshold::conclude(self, direction, plan, given),
             DcStage::Timing => timing::conclude(self, plan, given),
             DcStage::Resistance => resistance::conclude(self, plan, dc, given),
-        }
+        };
+        Ok(next?)
     }
 
     fn conclude_ac(
@@ -270,6 +275,18 @@ impl State {
             };
             self.record.found::<Sample>(of, reading, []);
         }
+    }
+
+    /// Takes a failure of the output off the record, so that known states of the fixture decide first; returns true when
+    /// there was one.
+    pub fn doubts(&mut self, stage: Stage) -> bool {
+        let about = |it: &Finding| it.is_about_output();
+        let failure = self.record.why_failed().filter(|_| stage != Stage::Known);
+        let is_doubted = failure.and_then(Finding::of).is_some_and(|it| about(&it));
+        if is_doubted {
+            self.doubted = self.record.take_failure();
+        }
+        is_doubted
     }
 
     /// Returns true when the test measures the characteristic of this part.

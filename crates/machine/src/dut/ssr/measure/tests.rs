@@ -379,3 +379,29 @@ fn a_good_part_needs_few_programs_and_little_waiting() {
     );
     assert!(waits_ms < 150.0, "{waits_ms} ms");
 }
+
+#[test]
+fn a_short_in_the_socket_fails_no_part() {
+    let test = tested(changed(|it| it.is_socket_shorted = true));
+    let why = Stop::Void(Finding::SocketShorted.into());
+    assert_eq!(test.why_stopped(), Some(&why));
+}
+
+#[test]
+fn a_lead_that_breaks_at_any_job_fails_no_part() {
+    let (mut voids, mut named) = (0, 0);
+    for jobs in 0..150 {
+        let mut bench = Bench::with(good());
+        bench.lead_opens_after = jobs;
+        let test = bench.tested(recipe(&[]), false);
+        let verdict = test.verdict();
+        assert!(
+            !matches!(verdict, Verdict::Fail(_)),
+            "after {jobs} jobs: {verdict:?}"
+        );
+        let dead = Stop::Void(Finding::LoopDead.into());
+        named += usize::from(test.why_stopped() == Some(&dead));
+        voids += usize::from(matches!(verdict, Verdict::Void(_)));
+    }
+    assert!(voids > 40 && named * 10 > voids * 9, "{named} of {voids}");
+}

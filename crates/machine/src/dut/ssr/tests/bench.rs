@@ -124,6 +124,8 @@ pub struct Part {
     pub on_s: f64,
     pub off_s: f64,
     pub is_shorted: bool,
+    /// True for a short in the socket.
+    pub is_socket_shorted: bool,
     pub has_diode: bool,
     pub is_turned: bool,
     /// Conducts for ever once this voltage has been at its input.
@@ -156,6 +158,7 @@ pub fn good() -> Part {
         on_s: 300e-6,
         off_s: 200e-6,
         is_shorted: false,
+        is_socket_shorted: false,
         has_diode: false,
         is_turned: false,
         sticks_at_v: f64::INFINITY,
@@ -175,6 +178,9 @@ pub struct Bench {
     pub rounds: usize,
     /// Jobs in their order, as words.
     pub log: Vec<String>,
+    /// Number of jobs after which the lead of the source at the output breaks, and (the next field) of those so far.
+    pub lead_opens_after: usize,
+    jobs: usize,
     wiring: Arc<Wiring>,
     image: Image,
     points: Points,
@@ -208,6 +214,8 @@ impl Bench {
             now: RigTime(1_000_000),
             rounds: 0,
             log: Vec::new(),
+            lead_opens_after: usize::MAX,
+            jobs: 0,
             on: BTreeSet::new(),
             is_lit: false,
             is_stuck: false,
@@ -255,6 +263,7 @@ impl Bench {
 
     fn does(&mut self, job: &Job) -> JobDone {
         self.now = self.now + Span::ms(2);
+        self.jobs += 1;
         match job {
             Job::Set(outputs) => {
                 let all = DigitalOut::ALL
@@ -302,7 +311,7 @@ impl Bench {
         let inputs = DigitalIn::ALL.iter().copied();
         let seen: Vec<DigitalIn> = inputs.filter(|it| self.sees(*it)).collect();
         let of = (&*self.wiring, &self.points);
-        let shown = (&seen[..], self.part.residual_v);
+        let shown = (&seen[..], self.socket_v());
         scan(&mut self.image, of, read, shown, self.now);
     }
 
@@ -314,7 +323,8 @@ impl Bench {
                 DigitalIn::ShortSeen => {
                     let conducts = self.part.is_shorted || self.is_stuck;
                     let conducts = conducts || (reversed && self.part.has_diode);
-                    is_on(DigitalOut::ShortCheck) && conducts
+                    let conducts = conducts && !is_on(DigitalOut::Reference0);
+                    is_on(DigitalOut::ShortCheck) && (conducts || self.part.is_socket_shorted)
                 }
                 DigitalIn::KelvinInPlus
                 | DigitalIn::KelvinInMinus
@@ -404,14 +414,14 @@ impl Bench {
             (Device::SmuOut, "drop_at_current") => {
                 assert!(self.is_lit, "a drop of a blocked output");
                 self.source_v = 1.0;
-                vec![(self.part.ohm * given("level_a")).min(given("limit_v"))]
+                vec![self.drop_v(given("level_a")).min(given("limit_v"))]
             }
             (Device::SmuOut, "drops_over_time") => {
                 assert!(self.is_lit, "drops of a blocked output");
                 (self.is_heated, self.source_v) = (true, 1.0);
                 let count = given("count") as usize;
                 let settled = |at: usize| 1.0 - (-(at as f64) * 0.02 / 0.03).exp();
-                let cold_v = self.part.ohm * given("level_a");
+                let cold_v = self.drop_v(given("level_a"));
                 let drop = |at| (cold_v + self.part.rise_v * settled(at)).min(given("limit_v"));
                 let drops: Vec<f64> = (0..count).map(drop).collect();
                 [vec![drops[count - 1]], drops].concat()

@@ -27,6 +27,9 @@ pub use part::{Part, good};
 /// Text of the recipe of a zero-cross part.
 pub const ZERO_CROSS: &str =
     include_str!("../../../../../../config/rigs/ssr/recipes/ssr-ac-240v-5a-zc.toml");
+/// Text of the recipe of a part that turns on at any instant.
+pub const RANDOM: &str =
+    include_str!("../../../../../../config/rigs/ssr/recipes/ssr-ac-240v-5a-random.toml");
 /// A recipe with changes of its text.
 pub fn recipe(text: &str, changes: &[(&str, &str)]) -> Arc<Recipe> {
     let text = changes.iter().fold(text.to_owned(), |text, (from, to)| {
@@ -218,7 +221,9 @@ impl LineBench {
         !self.part.stuck.contains(&point)
             && match point {
                 DigitalIn::ShortSeen => {
-                    closed(DigitalOut::ShortCheck) && self.part.shorted.abs() > 1.5
+                    let conducts = self.part.shorted.abs() > 1.5;
+                    let conducts = conducts && !closed(DigitalOut::Reference0);
+                    closed(DigitalOut::ShortCheck) && (conducts || self.part.is_socket_shorted)
                 }
                 DigitalIn::KelvinInPlus
                 | DigitalIn::KelvinInMinus

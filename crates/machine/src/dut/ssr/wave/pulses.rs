@@ -19,8 +19,6 @@ const AMBIGUOUS_S: f64 = 0.4e-3;
 const OFF_S: f64 = 1e-3;
 /// Time for which an output must conduct without a break before it counts as on, s.
 const CONDUCTS_S: f64 = 10e-6;
-/// Voltage below which neither the mains nor the drop of a triac shows, V.
-const SILENT_V: f64 = 0.3;
 /// Time before and after a zero of the mains in which an output fires again, s.
 const AGAIN_S: f64 = 0.8e-3;
 
@@ -114,13 +112,6 @@ impl Output<'_> {
     fn passing(&self, mains: &Mains) -> usize {
         let slope = std::f64::consts::TAU * mains.hz * mains.amplitude();
         (2.0 * self.on_v / slope / self.divided.step_s).ceil() as usize
-    }
-
-    /// Returns true when neither mains nor the drop of a triac shows for this time without a break.
-    pub fn is_silent(&self, for_s: f64) -> bool {
-        let count = (for_s / self.divided.step_s).ceil() as usize;
-        let is_low = |it: usize| self.at(it).abs() < SILENT_V;
-        run_from(is_low, (0, self.divided.len()), count).is_some()
     }
 
     /// Finds the answer to a pulse.

@@ -11,7 +11,7 @@ use super::super::stage::Stage;
 use super::super::state::{Next, State};
 use super::leakage::{Seen, record_acts, seen};
 use super::stage::{AcStage, Shift};
-use super::{STORED, close};
+use super::{STORED, close, supply};
 use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_plan::{AcPlan, CLAMP_V, DIVIDER, Scales};
@@ -35,6 +35,9 @@ const ROOM: f64 = 0.05;
 /// Time after a step of the control, s, from which an output that still conducts is stuck on, and one that still blocks
 /// never turns on.
 const LATE_S: f64 = 0.2;
+
+/// Channels that show whether the output conducts, while the line has its voltage.
+const CONDUCTS_CHANNELS: [f64; 3] = [DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL];
 
 /// Polarities that conduct in a period of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,11 +185,7 @@ fn late_acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Ve
         Act::Wait(Span::seconds(LATE_S)),
         Act::Query(vec![points.force_trigger()]),
     ]);
-    acts.extend(recorded(
-        &scales,
-        &[DIVIDED_CHANNEL, OUTPUT_CHANNEL],
-        points,
-    ));
+    acts.extend(recorded(&scales, &CONDUCTS_CHANNELS, points));
     acts
 }
 
@@ -210,11 +209,7 @@ fn rising_acts(
         Act::Wait(Span::seconds(ac.half_s() + plan.time_constant_s)),
         Act::Query(vec![points.level(Device::SmuIn, level_v)]),
     ]);
-    acts.extend(recorded(
-        &scales,
-        &[DIVIDED_CHANNEL, OUTPUT_CHANNEL],
-        points,
-    ));
+    acts.extend(recorded(&scales, &CONDUCTS_CHANNELS, points));
     acts
 }
 
@@ -226,10 +221,13 @@ fn recorded(scales: &Scales, channels: &[f64], points: &Points) -> [Act; 2] {
     ]
 }
 
-/// Returns which polarities conduct in the period that begins `from_s` after the trigger of a record.
-fn conducting(ac: &AcPlan, given: &Given, from_s: f64) -> Result<Conducting, NotDelivered> {
-    let [divided, clamped] = given.waveforms()?;
-    of_period(ac, [&divided, &clamped], from_s).ok_or(NotDelivered(Device::Digitizer))
+/// Returns which polarities conduct in the period from `from_s` after the trigger of a record on; fails with the reason
+/// when the line was dead in it.
+fn conducting(ac: &AcPlan, given: &Given, from_s: f64) -> Result<Conducting, Reason> {
+    let [divided, clamped, shunt] = given.waveforms()?;
+    supply::proven(ac, &ac.conducts(from_s), [&divided, &shunt])?;
+    let seen = of_period(ac, [&divided, &clamped], from_s);
+    seen.ok_or(NotDelivered(Device::Digitizer).into())
 }
 
 fn of_period(ac: &AcPlan, [divided, clamped]: [&Waveform; 2], from_s: f64) -> Option<Conducting> {
@@ -263,7 +261,7 @@ pub fn conclude_conducts(
     plan: &Plan,
     ac: &AcPlan,
     given: &Given,
-) -> Result<Next, NotDelivered> {
+) -> Result<Next, Reason> {
     let of = Parameter::TurnOnVoltage;
     let from_s = if shift == Shift::Late { 0.0 } else { plan.on_s };
     match (conducting(ac, given, from_s)?, shift) {

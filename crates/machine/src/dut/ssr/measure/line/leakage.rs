@@ -4,11 +4,12 @@ use super::super::board::Position;
 use super::super::given::{Given, NotDelivered};
 use super::super::state::{Next, State};
 use super::stage::AcStage;
+use super::supply::{self, FULL, Fed};
 use super::{STORED, close};
 use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy::{self as accuracy, LeakageOf};
-use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LINE_OHM, LINE_SHUNT_OHM, Scales};
+use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LINE_SHUNT_OHM, Scales};
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
@@ -23,15 +24,10 @@ use units::{Span, Unit};
 
 /// Least amplitude of the voltage at the output, as a share of the nominal one; the greatest is 2 minus this.
 const BLOCKED: f64 = 0.8;
-/// Rms of the voltage around its fit, as a share of the amplitude: a line that dies within the record leaves more.
+/// Rms of the voltage around its fit, as a share of the amplitude: an output that fires now and then leaves more.
 const CURVED: f64 = 0.1;
-/// Divisions from the middle of the screen at which a reading counts as over range.
-const FULL: f64 = 3.9;
-/// A polarity whose peak is below this share of the nominal one and which carries current counts as conducting.
+/// A polarity whose peak is below this share of the nominal one counts as conducting: the load has the rest.
 const CONDUCTS: f64 = 0.3;
-/// Least peak of that current, as a share of the nominal one through the load alone; the load then has at least 1 minus
-/// [`CONDUCTS`] of the voltage.
-const CARRIES: f64 = 0.5;
 
 /// Result of reading a record of a blocked output.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +42,7 @@ pub enum Seen {
     Conducts,
     /// The line does not have its nominal voltage.
     WrongMains,
-    /// Neither voltage nor current comes from the line.
+    /// The line was open or without its source for a while.
     Dead,
 }
 
@@ -110,32 +106,28 @@ pub fn acts(
 /// Reads a record of a blocked output on the line; `None` when the two channels do not fit each other or a sample is
 /// not finite.
 pub fn seen(ac: &AcPlan, waveforms: [&Waveform; 2]) -> Option<Seen> {
-    seen_at(ac, ac.peak_v(), ac.leakage_scale_v, waveforms)
+    seen_at(ac, ac.peak_v(), &ac.leakage(), waveforms)
 }
 
-/// Reads a record for a nominal peak of the output voltage, V, and a scale of the shunt channel, V per division.
+/// Reads a record for a nominal peak of the output voltage, V.
 pub fn seen_at(
     ac: &AcPlan,
     peak_v: f64,
-    scale_v: f64,
+    scales: &Scales,
     [divided, shunt]: [&Waveform; 2],
 ) -> Option<Seen> {
-    let end_a = FULL * scale_v / LINE_SHUNT_OHM;
+    match supply::fed(ac, scales, [divided, shunt])? {
+        Fed::Whole => {}
+        Fed::Broken => return Some(Seen::Dead),
+        Fed::Wrong => return Some(Seen::WrongMains),
+    }
+    let end_a = FULL * scales.shunt_v / LINE_SHUNT_OHM;
     let volts = Channel::of(divided, DIVIDER, 0.0)?;
     let current = Channel::of(shunt, 1.0 / LINE_SHUNT_OHM, 0.0)?;
-    if !volts.is_beside(&current) || volts.is_empty() {
-        return None;
-    }
-    let is_low = |sign| volts.peak(sign) < CONDUCTS * peak_v;
-    // The channel shows a current up to its end.
-    let carried_a = end_a.min(CARRIES * peak_v / LINE_OHM);
-    let carries = |sign| current.peak(sign) >= carried_a;
-    match [1.0, -1.0].map(|sign| (is_low(sign), carries(sign))) {
-        [(true, true), (true, true)] => return Some(Seen::Conducts),
-        [(true, false), (true, false)] => return Some(Seen::Dead),
-        [(true, true), (false, _)] | [(false, _), (true, true)] => return Some(Seen::Half),
-        [(true, _), _] | [_, (true, _)] => return Some(Seen::WrongMains),
-        [(false, _), (false, _)] => {}
+    match [1.0, -1.0].map(|sign| volts.peak(sign) < CONDUCTS * peak_v) {
+        [true, true] => return Some(Seen::Conducts),
+        [true, false] | [false, true] => return Some(Seen::Half),
+        [false, false] => {}
     }
     if current.reaches(end_a) {
         return Some(Seen::Beyond);

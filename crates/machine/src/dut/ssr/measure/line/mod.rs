@@ -10,6 +10,7 @@ pub mod looped;
 pub mod references;
 pub mod stage;
 pub mod staircase;
+pub mod supply;
 pub mod train;
 
 use super::board::{Position, RELAY};

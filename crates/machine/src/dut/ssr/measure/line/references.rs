@@ -203,7 +203,7 @@ fn line(
     let seen = seen_at(
         ac,
         share * ac.peak_v(),
-        reference.scales(ac).shunt_v,
+        &reference.scales(ac),
         [&divided, &shunt],
     );
     let leak = match seen {

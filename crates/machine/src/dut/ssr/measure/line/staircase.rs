@@ -8,11 +8,12 @@ use super::super::stage::Stage;
 use super::super::state::{Next, State};
 use super::super::threshold::{interval, narrowed};
 use super::stage::AcStage;
-use super::{STORED, close};
+use super::{STORED, close, supply};
+use crate::dut::Reason;
 use crate::dut::ssr::ac_plan::{AcPlan, CLAMP_V};
 use crate::dut::ssr::plan::{CurrentRange, Plan};
 use crate::dut::ssr::points::{Device, Points};
-use crate::dut::ssr::program::{CONTROL_CHANNEL, OUTPUT_CHANNEL};
+use crate::dut::ssr::program::{CONTROL_CHANNEL, DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::search::{Direction, Search};
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::staircase::{Levels, turned};
@@ -25,6 +26,14 @@ const BRIEF: f64 = 0.01;
 const MOST: f64 = 16.0;
 /// Resolution of levels, V: the text of a level holds no further digit.
 const ROUND_V: f64 = 1e-4;
+
+/// Channels that show the level and the output, and that the line has its voltage.
+const CHANNELS: [f64; 4] = [
+    CONTROL_CHANNEL,
+    OUTPUT_CHANNEL,
+    DIVIDED_CHANNEL,
+    SHUNT_CHANNEL,
+];
 
 /// Returns the levels of the next staircase of a search.
 fn levels(search: &Search, direction: Direction, plan: &Plan) -> Levels {
@@ -79,8 +88,7 @@ pub fn acts(
     };
     state.search = Some(search);
     let levels = levels(&search, direction, plan);
-    // Between two zeros of the mains, and as long as a part near its threshold is late.
-    let dwell_s = ac.half_s() + plan.dwell().as_seconds();
+    let dwell_s = dwell_s(plan, ac);
     let scales = ac.staircase(levels.count as f64 * dwell_s);
     let brief = CurrentRange {
         periods: BRIEF,
@@ -97,9 +105,14 @@ pub fn acts(
         Act::Mark,
         Act::Query(vec![points.staircase(&levels, dwell_s)]),
         Act::WaitSinceMark(Span::seconds(scales.record_s) + STORED),
-        Act::Query(points.record(&scales, &[CONTROL_CHANNEL, OUTPUT_CHANNEL])),
+        Act::Query(points.record(&scales, &CHANNELS)),
     ]);
     acts
+}
+
+/// Returns the time at a level, s: between two zeros of the mains, and as long as a part near its threshold is late.
+fn dwell_s(plan: &Plan, ac: &AcPlan) -> f64 {
+    ac.half_s() + plan.dwell().as_seconds()
 }
 
 /// Concludes a staircase.
@@ -109,14 +122,16 @@ pub fn conclude(
     plan: &Plan,
     ac: &AcPlan,
     given: &Given,
-) -> Result<Next, NotDelivered> {
+) -> Result<Next, Reason> {
     let Some(mut search) = state.search else {
         return Ok(Next::Planned);
     };
-    let [control, output] = given.waveforms()?;
+    let [control, output, divided, shunt] = given.waveforms()?;
     let channels = Channel::of(&control, 1.0, 0.0).zip(Channel::of(&output, 1.0, 0.0));
     let on_v = ac.on_v.min(CLAMP_V / 2.0);
     let levels = levels(&search, direction, plan);
+    let scales = ac.staircase(levels.count as f64 * dwell_s(plan, ac));
+    supply::proven(ac, &scales, [&divided, &shunt])?;
     let turned = channels.and_then(|(control, output)| turned(&control, &output, &levels, on_v));
     let turned = turned.ok_or(NotDelivered(Device::Digitizer))?;
     match direction {

@@ -2,23 +2,22 @@
 //! the voltage at turn-on, and the voltage at later half cycles.
 
 use super::super::board::{Position, RELAY};
-use super::super::given::{Given, NotDelivered};
+use super::super::given::Given;
 use super::super::state::{Next, Pulses, State};
-use super::{STORED, close, conclude_ready, leave, loop_level};
+use super::{STORED, close, conclude_ready, leave, loop_level, supply};
 use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
-use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM};
+use crate::dut::ssr::ac_plan::{AcPlan, BEFORE, CLAMP_V, DIVIDER};
 use crate::dut::ssr::marks;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
-use crate::dut::ssr::points::{Device, Points};
+use crate::dut::ssr::points::Points;
 use crate::dut::ssr::program::{CONTROL_CHANNEL, DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::references::References;
 use crate::dut::ssr::wave::Channel;
 use crate::dut::ssr::wave::mains::Mains;
 use crate::dut::ssr::wave::pulses::{Answer, Output, Pulse};
-use crate::dut::ssr::wave::turn::run_from;
 use crate::instrument::act::Act;
 use crate::instrument::query::Waveform;
 use units::{Span, Unit};
@@ -40,13 +39,6 @@ const NEAR_US: f64 = 400.0;
 /// Share of the clamp voltage up to which the clamped channel follows the signal, so that it can be compared with the
 /// divided one.
 const FOLLOWED: f64 = 0.85;
-/// Time without voltage that no zero of a live line explains, as a share of half a period.
-const SILENT: f64 = 0.25;
-/// Time within which a live line reaches both polarities, in half periods: one, and the time that it takes to pass
-/// [`LOW`] twice.
-const ONE_SIGN: f64 = 1.4;
-/// Voltage of the line, as a share of its peak, that a live line exceeds except around its zeros.
-const LOW: f64 = 0.1;
 
 /// Returns the acts of the train. The test reads the record after the contactor of the line has opened, while the
 /// source goes to the voltage of the loop.
@@ -80,8 +72,6 @@ pub struct Walk {
     pub answers: Vec<Answer>,
     /// Interval between two samples, s.
     pub step_s: f64,
-    /// True when the output shows neither mains nor drop for longer than any zero lasts.
-    pub is_silent: bool,
 }
 
 /// Reads the record of a train; `None` when the channels do not fit each other, or the output never blocks.
@@ -124,34 +114,7 @@ pub fn walk(
         mains,
         answers: answers.collect(),
         step_s,
-        is_silent: output.is_silent(SILENT * ac.half_s()),
     })
-}
-
-impl Walk {
-    /// Returns true when each pulse turns the output on and its end turns it off, with voltage before and behind.
-    fn is_whole(&self) -> bool {
-        let answers = |it: &Answer| it.on.is_some() && it.off_s.is_some();
-        !self.is_silent && self.answers.iter().all(answers)
-    }
-}
-
-/// Returns true when the line has its voltage in the whole record: the sum of the voltages of output and load is low
-/// only at its zeros, and changes its sign. A dead line leaves a constant voltage at the capacitance of the output.
-/// `None` when the channels do not fit each other.
-fn lives(ac: &AcPlan, [divided, shunt]: [&Waveform; 2]) -> Option<bool> {
-    let output = Channel::of(divided, DIVIDER, 0.0)?;
-    let load = Channel::of(shunt, LINE_OHM / LINE_SHUNT_OHM, 0.0)?;
-    let least_v = LOW * ac.peak_v();
-    let line_v = |it: usize| output.at(it) + load.at(it);
-    let lasts = |is_so: &dyn Fn(usize) -> bool, halves: f64| {
-        let count = (halves * ac.half_s() / output.step_s).ceil() as usize;
-        run_from(is_so, (0, output.len()), count).is_some()
-    };
-    let is_dead = lasts(&|it| line_v(it).abs() < least_v, SILENT)
-        || lasts(&|it| line_v(it) < least_v, ONE_SIGN)
-        || lasts(&|it| line_v(it) > -least_v, ONE_SIGN);
-    output.is_beside(&load).then_some(!is_dead)
 }
 
 /// Returns the offset of the clamped channel against the divided one, V, from the samples that both follow.
@@ -173,13 +136,9 @@ pub fn conclude(
 ) -> Result<Next, Reason> {
     conclude_ready(state, ac, given);
     let [_control, divided, clamped, shunt] = given.waveforms()?;
-    let walk = walk(ac, state.references, [&divided, &clamped]);
     // On a line that has died the output answers wrongly, or seems to conduct well.
-    if !walk.as_ref().is_some_and(Walk::is_whole)
-        && !lives(ac, [&divided, &shunt]).ok_or(NotDelivered(Device::Digitizer))?
-    {
-        return Err(Finding::LineDead.into());
-    }
+    supply::proven(ac, &ac.train(), [&divided, &shunt])?;
+    let walk = walk(ac, state.references, [&divided, &clamped]);
     judge(state, plan, ac, walk);
     Ok(Next::Planned)
 }

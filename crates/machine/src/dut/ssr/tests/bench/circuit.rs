@@ -36,10 +36,37 @@ impl Bench {
         }
     }
 
+    fn is_lead_open(&self) -> bool {
+        self.jobs > self.lead_opens_after
+    }
+
+    /// Returns the drop at a current without the limit of the source, V.
+    pub(super) fn drop_v(&self, ampere: f64) -> f64 {
+        match self.is_lead_open() {
+            true => f64::INFINITY,
+            false => self.part.ohm * ampere,
+        }
+    }
+
+    /// Returns the voltage at the socket while the source is there without its load, else what is left of it, V.
+    pub(super) fn socket_v(&self) -> f64 {
+        let is_fed = self.on.contains(&DigitalOut::SmuToOutput) && !self.is_lead_open();
+        match is_fed && !self.on.contains(&DigitalOut::SmuLoad) {
+            true => self.source_v,
+            false => self.part.residual_v,
+        }
+    }
+
     pub(super) fn output_a(&self) -> f64 {
         let is_on = |output| self.on.contains(&output);
         assert!(is_on(DigitalOut::SmuToOutput) && is_on(DigitalOut::BleedOpen));
         let load_ohm = f64::from(u8::from(is_on(DigitalOut::SmuLoad))) * 1000.0;
+        if self.is_lead_open() {
+            return 0.0;
+        }
+        if is_on(DigitalOut::Reference1) {
+            return self.source_v / (load_ohm + 1e-3);
+        }
         if self.part.is_turned {
             let forward = !is_on(DigitalOut::OutputPolarity);
             return f64::from(u8::from(forward)) * 1.9e-3;
@@ -83,6 +110,7 @@ impl Bench {
         };
         let volts = |at_s: f64| match channel {
             1.0 if !self.ramp.is_empty() => ramp(at_s).0,
+            3.0 if self.is_lead_open() => 0.0,
             3.0 if !self.ramp.is_empty() => 8.0 - 7.99 * f64::from(u8::from(ramp(at_s).1)),
             1.0 => 5.0 * pulse(at_s),
             3.0 => 8.0 - 7.99 * load(at_s),

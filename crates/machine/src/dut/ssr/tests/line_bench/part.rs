@@ -24,6 +24,8 @@ pub struct Part {
     pub dead: f64,
     /// Polarity that always conducts on the mains; 0 for none. Above 1.5 the short check finds a short, too.
     pub shorted: f64,
+    /// Polarity that does not conduct in the loop, 0 for none.
+    pub dead_in_loop: f64,
     pub leak_s: f64,
     pub leak_f: f64,
     /// True when the output conducts for good once it has conducted.
@@ -45,6 +47,10 @@ pub struct Part {
     pub dead_from: usize,
     /// Time into that record at which the line dies, s; below 0 before it.
     pub dies_s: f64,
+    /// Time into the record of the loop at which the loop opens, s; infinite for a loop that stays closed.
+    pub loop_opens_s: f64,
+    /// True for a short in the socket.
+    pub is_socket_shorted: bool,
     pub failing: Option<(Device, &'static str)>,
     /// Ratio of the voltage that the source has to the one asked of it.
     pub source: f64,
@@ -66,6 +72,7 @@ pub fn good() -> Part {
         ohm: 0.02,
         dead: 0.0,
         shorted: 0.0,
+        dead_in_loop: 0.0,
         leak_s: 4e-6 / 230.0,
         leak_f: 20e-9,
         sticks: false,
@@ -78,6 +85,8 @@ pub fn good() -> Part {
         broken: Vec::new(),
         dead_from: usize::MAX,
         dies_s: f64::NEG_INFINITY,
+        loop_opens_s: f64::INFINITY,
+        is_socket_shorted: false,
         failing: None,
         source: 1.0,
         hz: 49.98,

@@ -67,7 +67,8 @@ impl LineBench {
         if flow.polarity != 0.0 && source_v * flow.polarity <= drop_v {
             flow.polarity = 0.0;
         }
-        if flow.polarity == 0.0 && sign != part.dead {
+        let is_dead = sign == part.dead || (!line && sign == part.dead_in_loop);
+        if flow.polarity == 0.0 && !is_dead {
             let rises = (self.source_v(at_s + step_s) - source_v) * sign > 0.0;
             let near = source_v.abs() < 25.0;
             let fires = match (flow.has_fired, part.zero_cross) {
@@ -97,7 +98,8 @@ impl LineBench {
         self.dead_s = match self.line_records.cmp(&self.part.dead_from) {
             Ordering::Equal if is_line => begins_s + self.part.dies_s,
             Ordering::Greater if is_line => f64::NEG_INFINITY,
-            Ordering::Less | Ordering::Equal | Ordering::Greater => f64::INFINITY,
+            Ordering::Less | Ordering::Equal | Ordering::Greater if is_line => f64::INFINITY,
+            _no_line => begins_s + self.part.loop_opens_s,
         };
         self.line_records += usize::from(is_line);
         let reference = (
