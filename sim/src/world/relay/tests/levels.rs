@@ -57,3 +57,19 @@ fn no_level_of_detail_moves_a_first_change() {
         assert!(off_s < 5e-7, "off into {volts} V: {off_s:e} s");
     }
 }
+
+#[test]
+fn a_step_near_the_dynamic_threshold_takes_the_reference_time() {
+    let model = Model::new(&Parameters::default());
+    for (above, expected_ms, within_ms) in [(1e-3, 29.540_083_83, 3e-3), (1e-6, 43.795_212_29, 0.2)]
+    {
+        let drive = Drive::still(7.855_922_331_955_684 * (1.0 + above));
+        let mut motion = Motion::from_equilibrium(model.clone(), 0.0, drive, model.at_rest(0.0));
+        let events = std::iter::from_fn(|| motion.advance(0.06));
+        let [.., make_s] = first_changes(&events.collect::<Vec<_>>());
+        assert!(
+            (1e3 * make_s - expected_ms).abs() < within_ms,
+            "{above:e} above: {make_s} s"
+        );
+    }
+}
