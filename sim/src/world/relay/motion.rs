@@ -184,14 +184,15 @@ impl Motion {
         self.press(self.solver.state);
         while self.solver.t_s < until_s {
             let now = self.solver.state;
-            let rate = self.flux_rate(&now);
+            let blocked = self.model.gap(Element::CoilBlocked, &now, &self.drive) > -STILL_V;
+            let rate = self.branch_rate(&now, blocked);
             if rate.abs() < STILL_V {
                 self.solver.t_s = until_s;
                 return;
             }
-            let steady = FLUX_STEP_SHARE * self.model.flux_time_s(&now, rate, &self.drive);
+            let steady = FLUX_STEP_SHARE * self.model.flux_time_s(&now, blocked);
             let h = FLUX_STEP_S.min(steady).min(until_s - self.solver.t_s);
-            let (h, next) = self.flux_step(&now, rate, h);
+            let (h, next) = self.flux_step(&now, blocked, h);
             if self.press(next) < LEAST_PUSH_N && !self.stuck {
                 self.held = false;
                 let leaving = self.with_speeds(&now, rate);
@@ -204,21 +205,29 @@ impl Motion {
         }
     }
 
+    fn branch_rate(&self, s: &State, blocked: bool) -> f64 {
+        self.model
+            .branch_flux_rate(self.solver.t_s, s, &self.drive, blocked)
+    }
+
     /// Returns the state after a step of the flux, and the length of the step: `h`, or less if the suppression blocks
-    /// before.
-    fn flux_step(&self, now: &State, rate: f64, mut h: f64) -> (f64, State) {
+    /// before. The suppression stays `blocked`, or conducts, throughout the step.
+    fn flux_step(&self, now: &State, blocked: bool, mut h: f64) -> (f64, State) {
         let gap = |s: &State| self.model.gap(Element::CoilBlocked, s, &self.drive);
         let after = |h: f64| {
             let mut next = *now;
-            next[LAMBDA] += h * self.mean_rate(now, rate, h);
+            next[LAMBDA] += h * self.mean_rate(now, blocked, h);
             next
         };
         let (from, mut next) = (gap(now), after(h));
+        if blocked || matches!(self.drive, Drive::Source { .. }) {
+            return (h, next);
+        }
         for _ in 0..BLOCKING_TRIALS {
             let mut pressed = next;
             self.model.pressed(&mut pressed);
             let to = gap(&pressed);
-            if from > -STILL_V || to < STILL_V {
+            if to < STILL_V {
                 break;
             }
             h *= from / (from - to);
@@ -248,13 +257,14 @@ impl Motion {
     }
 
     /// Returns the mean rate of change of the flux over a step, by the classical Runge-Kutta method of order 4.
-    fn mean_rate(&self, s: &State, first: f64, h: f64) -> f64 {
+    fn mean_rate(&self, s: &State, blocked: bool, h: f64) -> f64 {
         let at = |rate: f64, part: f64| {
             let mut s = *s;
             s[LAMBDA] += part * h * rate;
             self.model.pressed(&mut s);
-            self.flux_rate(&s)
+            self.branch_rate(&s, blocked)
         };
+        let first = self.branch_rate(s, blocked);
         let second = at(first, 0.5);
         let third = at(second, 0.5);
         let fourth = at(third, 1.0);

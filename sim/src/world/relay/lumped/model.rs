@@ -119,25 +119,25 @@ impl Model {
     /// Returns the rate of change of the flux linkage while the armature rests, V; the state itself, not a flag,
     /// decides whether the suppression conducts.
     pub fn resting_flux_rate(&self, t_s: f64, s: &State, drive: &Drive) -> f64 {
-        let current = self.still_current(s);
-        let conducting = self.flux_rate(t_s, current, Modes::default(), drive);
-        match drive {
-            Drive::Source { .. } => conducting,
-            Drive::Suppression { .. } => conducting.max(self.blocked_rate(current)),
-        }
+        let blocked = self.gap(Element::CoilBlocked, s, drive) > 0.0;
+        self.branch_flux_rate(t_s, s, drive, blocked)
+    }
+
+    /// Returns the rate of change of the flux linkage while the suppression conducts, or while it is `blocked`, V.
+    pub fn branch_flux_rate(&self, t_s: f64, s: &State, drive: &Drive, blocked: bool) -> f64 {
+        let mut modes = Modes::default();
+        modes.set(Element::CoilBlocked, blocked);
+        self.flux_rate(t_s, self.still_current(s), modes, drive)
     }
 
     /// Returns the time constant of the flux linkage while the armature rests, s: that of winding and eddy currents
-    /// together, or of eddy currents alone while the suppression blocks the coil current.
-    pub fn flux_time_s(&self, s: &State, flux_rate: f64, drive: &Drive) -> f64 {
+    /// together, or of eddy currents alone while the suppression is `blocked`.
+    pub fn flux_time_s(&self, s: &State, blocked: bool) -> f64 {
         let reluctance = self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]);
         let eddy = self.p.k_ec / reluctance;
-        let blocked = self.blocked_rate(self.still_current(s));
-        match drive {
-            Drive::Suppression { .. } if flux_rate <= blocked => eddy,
-            Drive::Source { .. } | Drive::Suppression { .. } => {
-                eddy + self.p.N * self.p.N / (self.ohm * reluctance)
-            }
+        match blocked {
+            true => eddy,
+            false => eddy + self.p.N * self.p.N / (self.ohm * reluctance),
         }
     }
 

@@ -52,9 +52,15 @@ fn no_level_of_detail_moves_a_first_change() {
         let off_s = distance(&model, model.at_rest(0.0), Drive::still(volts));
         assert!(off_s < 5e-7, "{volts} V: {off_s:e} s");
     }
-    for volts in [60.0, 24.7, 0.7] {
-        let off_s = distance(&model, model.sealed(12.0), Drive::Suppression { volts });
-        assert!(off_s < 5e-7, "off into {volts} V: {off_s:e} s");
+    for k_ec in [340.0, 1100.0, 2500.0, 6000.0] {
+        let model = Model::new(&Parameters {
+            k_ec,
+            ..Parameters::default()
+        });
+        for volts in [60.0, 24.7, 0.7] {
+            let off_s = distance(&model, model.sealed(12.0), Drive::Suppression { volts });
+            assert!(off_s < 5e-7, "{k_ec} S, off into {volts} V: {off_s:e} s");
+        }
     }
 }
 
