@@ -9,7 +9,7 @@
 //! - *moving*: the motion integrates all five states of [`super::lumped`], until the bounce has died out.
 //!
 //! A model without the leaf would be cheaper and 4 % off in time. Against all five states throughout, the levels move the
-//! first change of a contact after a step by less than 0.5 us (`no_level_of_detail_moves_a_first_change`).
+//! first change of a contact after a step by less than 1 us (`no_level_of_detail_moves_a_first_change`).
 
 use serde::Serialize;
 
