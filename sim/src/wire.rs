@@ -122,16 +122,29 @@ impl Line {
     /// Serves until the host closes its end or the port is lost.
     async fn converse(&mut self, device: &mut DuplexStream) -> std::io::Result<()> {
         let mut bytes = [0u8; 256];
-        while self.rig.port_back_us(self.number, self.now_us()).is_none() {
-            let next_us = self.next_us();
-            let due = sleep_until(self.at(next_us.unwrap_or(0)));
+        let mut now_us = self.now_us();
+        while self.rig.port_back_us(self.number, now_us).is_none() {
+            let due = self.next_us(now_us).map(|next_us| self.at(next_us));
+            let due = async {
+                match due {
+                    Some(due) => sleep_until(due).await,
+                    None => std::future::pending().await,
+                }
+            };
             tokio::select! {
                 biased;
                 count = device.read(&mut bytes) => match count? {
                     0 => return Ok(()),
-                    count => self.take(&bytes[..count]),
+                    count => {
+                        now_us = self.now_us();
+                        let arrivals = self.receiver.take(&bytes[..count], now_us);
+                        self.arrivals.extend(arrivals);
+                    }
                 },
-                () = due, if next_us.is_some() => self.act(device).await?,
+                () = due => {
+                    now_us = self.now_us();
+                    self.act(device, now_us).await?;
+                }
             }
         }
         Ok(())
@@ -145,22 +158,17 @@ impl Line {
         self.from_us + self.pace.now_us()
     }
 
-    fn take(&mut self, bytes: &[u8]) {
-        let arrivals = self.receiver.take(bytes, self.now_us());
-        self.arrivals.extend(arrivals);
-    }
-
-    fn next_us(&self) -> Option<u64> {
+    /// Returns the instant at which the line acts next; `None` while it only waits for bytes.
+    fn next_us(&self, now_us: u64) -> Option<u64> {
         let arrival = self.arrivals.front().map(|arrival| arrival.at_us);
         let reply = self.replies.iter().map(|reply| reply.at_us).min();
-        let loss = self.rig.next_port_loss_us(self.number, self.now_us());
-        let look = self.is_reader.then(|| self.now_us() + LOOK_US);
+        let loss = self.rig.next_port_loss_us(self.number, now_us);
+        let look = self.is_reader.then(|| now_us + LOOK_US);
         let due = arrival.into_iter().chain(reply).chain(loss).chain(look);
         due.min()
     }
 
-    async fn act(&mut self, device: &mut DuplexStream) -> std::io::Result<()> {
-        let now_us = self.now_us();
+    async fn act(&mut self, device: &mut DuplexStream, now_us: u64) -> std::io::Result<()> {
         if let Some(place) = self.due_reply(now_us) {
             let reply = self.replies.remove(place);
             device.write_all(&reply.bytes).await?;

@@ -35,6 +35,8 @@ pub(super) struct Recorder {
     /// Ordinal of the last judged part among the rows that wait.
     judged: Option<u64>,
     contents: Option<(Inside, Uses)>,
+    /// Contents of the machine in the last row of them, written or waiting.
+    recorded: Inside,
     /// Wall time of all transactions so far.
     pub writing: Duration,
 }
@@ -53,6 +55,7 @@ impl Recorder {
             rows: Vec::new(),
             judged: None,
             contents: None,
+            recorded: Inside::default(),
             writing: Duration::ZERO,
         };
         if !context.purpose.is_between_lots() {
@@ -126,7 +129,7 @@ impl Recorder {
             }
             Event::Inside(inside, uses) => {
                 self.contents = Some((*inside, *uses));
-                if inside.needs_record() {
+                if inside.needs_record(self.recorded) {
                     self.queue_contents();
                 }
             }
@@ -215,6 +218,7 @@ impl Recorder {
         if let Some((inside, uses)) = self.contents.take() {
             self.rows.extend(self.journal.uses(uses));
             self.rows.push(self.journal.inside(inside));
+            self.recorded = inside;
         }
     }
 

@@ -36,9 +36,12 @@ impl Inside {
     }
 
     /// Returns true for places that the sensors alone could not reconstruct later: a part is falling, or the next part
-    /// has taken the place from which another was lifted.
-    pub fn needs_record(self) -> bool {
-        self.falling.is_some() || self.gripper && self.nest
+    /// has taken the place from which another was lifted. `recorded` are the places on record. A change of the pocket
+    /// alone needs no record: its part cannot leave it for a full nest, and its sensor sees it.
+    pub fn needs_record(self, recorded: Self) -> bool {
+        let pocket = recorded.pocket;
+        let has_changed = Self { pocket, ..self } != recorded;
+        has_changed && (self.falling.is_some() || self.gripper && self.nest)
     }
 
     /// Returns a trouble for each part that is neither in its old place nor in one that it can have reached since.

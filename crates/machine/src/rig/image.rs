@@ -8,7 +8,7 @@ use super::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Thermomet
 use super::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
 use super::wiring::{LineId, Module, ModuleId, Wiring};
 use dcon::{Address, Channel, Command, Common, Digital, Reading, Reply, Unit, Value};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 use units::{RigTime, Span};
 
@@ -51,6 +51,8 @@ pub struct Image {
     events: Vec<Option<CountSample>>,
     levels: Vec<Option<(f64, RigTime)>>,
     resets: Vec<ModuleId>,
+    /// [`Wiring::emergency_stop_max_age`], which every turn needs.
+    emergency_stop_max_age: OnceLock<Span>,
 }
 
 impl Image {
@@ -65,6 +67,7 @@ impl Image {
             events: vec![None; wiring.digital_in.len()],
             levels: vec![None; modules],
             resets: Vec::new(),
+            emergency_stop_max_age: OnceLock::new(),
             wiring,
         }
     }
@@ -270,15 +273,23 @@ impl Image {
     /// Returns the state of the emergency-stop contact; `None` once the value is so old that the contact counts as
     /// open.
     pub fn emergency_stop_ok(&self, now: RigTime) -> Option<bool> {
-        let max_age = self.wiring.emergency_stop_max_age();
-        self.input(DigitalIn::EmergencyStopOk, now, max_age)
+        self.input(
+            DigitalIn::EmergencyStopOk,
+            now,
+            self.emergency_stop_max_age(),
+        )
     }
 
     /// Returns the time at which the state of the emergency-stop contact expires unless it is read again; `None` if it
     /// was never read.
     pub fn emergency_stop_known_until(&self) -> Option<RigTime> {
         let requested = self.input_at(DigitalIn::EmergencyStopOk)?;
-        Some(requested + self.wiring.emergency_stop_max_age())
+        Some(requested + self.emergency_stop_max_age())
+    }
+
+    fn emergency_stop_max_age(&self) -> Span {
+        let derived = || self.wiring.emergency_stop_max_age();
+        *self.emergency_stop_max_age.get_or_init(derived)
     }
 
     /// Returns the time of the last answered request for a digital input; `None` without a value.

@@ -62,6 +62,9 @@ pub fn depth_mm(a: &Body, b: &Body, posture: &Posture) -> f64 {
     let mut depth = f64::NEG_INFINITY;
     for one in &a.solids {
         for other in &b.solids {
+            if !one.box_at(way_a).intersects(&other.box_at(way_b)) {
+                continue;
+            }
             let (here, there) = (one.placed(way_a), other.placed(way_b));
             let met = contact(&here, &*one.shape, &there, &*other.shape, 0.0);
             if let Ok(Some(met)) = met {

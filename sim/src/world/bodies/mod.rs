@@ -20,7 +20,7 @@ use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use super::posture::{ACTUATORS, Posture};
 use crate::config::{ConfigError, Files};
 use body::{Body, PARTS, depth_mm, element, parts};
-use pair_limits::{PairLimits, pair_limits};
+use pair_limits::{PairLimits, mask, pair_limits};
 use scene::{Scene, Size};
 
 /// Longest relative travel between two checks, mm: the width of the thinnest solid of the scene.
@@ -81,12 +81,15 @@ impl Bodies {
         between: impl Fn(f64) -> Posture,
         touching: &mut BTreeSet<(usize, usize)>,
     ) -> Vec<String> {
-        let moved: [bool; 8] = std::array::from_fn(|n| from.mm[n] != to.mm[n]);
-        let there = |(n, body): (usize, &Body)| self.is_there(n, to).then(|| body.swept(from, to));
-        let boxes: Vec<Option<Aabb>> = self.bodies.iter().enumerate().map(there).collect();
+        let moved = mask(|n| from.mm[n] != to.mm[n]);
+        let mut boxes: Vec<Option<Aabb>> = vec![None; self.bodies.len()];
+        let mut swept = |n: usize| {
+            let there = self.is_there(n, to);
+            there.then(|| *boxes[n].get_or_insert_with(|| self.bodies[n].swept(from, to)))
+        };
         let mut found = Vec::new();
-        for limit in self.limits.iter().filter(|it| it.is_moved(&moved)) {
-            let (Some(one), Some(other)) = (boxes[limit.pair.0], boxes[limit.pair.1]) else {
+        for limit in self.limits.iter().filter(|it| it.is_moved(moved)) {
+            let (Some(one), Some(other)) = (swept(limit.pair.0), swept(limit.pair.1)) else {
                 touching.remove(&limit.pair);
                 continue;
             };
@@ -94,7 +97,7 @@ impl Bodies {
                 true => self.deepest_mm(limit.pair, (from, to), &between),
                 false => f64::NEG_INFINITY,
             };
-            if depth_mm <= limit.allowed(&moved, to.slack) + ROUNDING_MM {
+            if depth_mm <= limit.allowed(moved, to.slack) + ROUNDING_MM {
                 touching.remove(&limit.pair);
             } else if touching.insert(limit.pair) {
                 let (a, b) = (&self.bodies[limit.pair.0], &self.bodies[limit.pair.1]);

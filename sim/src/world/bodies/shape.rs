@@ -6,6 +6,9 @@ use parry3d_f64::shape::SharedShape;
 
 use super::scene::{Body, Form, Size};
 
+/// Margin of a bounding box, mm: far more than its rounding error.
+const MARGIN_MM: f64 = 1e-6;
+
 /// A convex solid at rest.
 #[derive(Clone)]
 pub struct Solid {
@@ -34,6 +37,15 @@ impl Solid {
     /// Returns the bounding box at rest.
     pub fn rest_box(&self) -> Aabb {
         self.rest_box
+    }
+
+    /// Returns the bounding box after the displacement `way`, larger by [`MARGIN_MM`] on every side.
+    pub fn box_at(&self, way: Vector) -> Aabb {
+        let margin = Vector::splat(MARGIN_MM);
+        Aabb::new(
+            self.rest_box.mins + way - margin,
+            self.rest_box.maxs + way + margin,
+        )
     }
 
     /// Returns the pose after the displacement `way`.

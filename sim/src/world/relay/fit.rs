@@ -15,7 +15,8 @@
 
 use std::ops::Range;
 
-use super::lumped::{Drive, Element, Model, Parameters, Solver, State};
+use super::lumped::{Drive, Element, Model, Parameters, State};
+use super::motion::Motion;
 
 /// Results that the fitted relay must show, at 23 C.
 #[derive(Debug, Clone, Copy)]
@@ -49,8 +50,6 @@ pub enum TimeOrigin {
     Iron,
 }
 
-/// Relative tolerance of the integration, sufficient for a microsecond.
-const RTOL: f64 = 1e-6;
 /// Relative error up to which a time counts as matched: 0.5 us in 5 ms.
 const GOOD: f64 = 1e-4;
 /// Upper limit of the operate time and release time of any relay, s.
@@ -215,10 +214,10 @@ impl FitTarget {
     }
 }
 
-/// Returns the instant of the first make of a contact, s; [`LONGEST_S`] if it never makes.
+/// Returns the instant of the first make of a contact after a start in equilibrium, s; [`LONGEST_S`] if it never makes.
 fn first_make(model: &Model, start: State, drive: &Drive, contact: Element) -> f64 {
-    let mut solver = Solver::new(model, drive, 0.0, start, RTOL);
-    while let Ok(Some(event)) = solver.advance(model, drive, LONGEST_S) {
+    let mut motion = Motion::from_equilibrium(model.clone(), 0.0, *drive, start);
+    while let Ok(Some(event)) = motion.try_advance(LONGEST_S) {
         if event.element == contact && event.on {
             return event.t_s;
         }

@@ -5,6 +5,7 @@
 mod coil;
 mod contacts;
 mod drawn;
+mod levels;
 mod transients;
 
 use super::values::{ContactFilm, Scale};

@@ -87,7 +87,7 @@ fn a_removed_lifted_part_is_always_reported() {
         (0b111, 0b011),
     ] {
         let now = left(places);
-        if now.needs_record() {
+        if now.needs_record(written) {
             written = now;
         }
         let troubles = written.missing(&seen(without_it)).len();

@@ -133,7 +133,7 @@ pub struct TrialStep {
     pub error: f64,
 }
 
-#[inline]
+#[inline(always)]
 fn blend<const N: usize>(weights: &[f64; N], slopes: [&State; N]) -> State {
     let mut sum = [0.0; 5];
     for (weight, slope) in weights.iter().zip(slopes) {
@@ -146,7 +146,7 @@ fn blend<const N: usize>(weights: &[f64; N], slopes: [&State; N]) -> State {
 
 /// Returns the state after `h` seconds along weighted slopes. The latest slope must come last: then only one product
 /// and one sum wait for it.
-#[inline]
+#[inline(always)]
 fn along<const N: usize>(from: &State, h: f64, weights: &[f64; N], slopes: [&State; N]) -> State {
     let mut to = *from;
     for (weight, slope) in weights.iter().zip(slopes) {

@@ -13,13 +13,16 @@
 //! ```
 //!
 //! In reading order: [`parameters`], [`stop`] (a compliant contact), [`modes`] (engaged stops), [`coil`] (the
-//! drive), [`model`] (the equations), [`statics`] (equilibrium and thresholds), [`dop853`] (one step), [`solver`]
-//! (from event to event), [`outcome`] (results of a transient).
+//! drive), [`model`] (the equations), [`condensed`] (the equations while the leaf presses), [`statics`] (equilibrium
+//! and thresholds), [`dop853`] (one step), [`solver`] (from event to event), [`locate`] (instant of an event),
+//! [`outcome`] (results of a transient).
 //!
 //! The model omits remanence, distributed eddy currents, higher modes of the leaf, arc and gravity.
 
 pub mod coil;
+mod condensed;
 pub mod dop853;
+mod locate;
 pub mod model;
 pub mod modes;
 pub mod outcome;

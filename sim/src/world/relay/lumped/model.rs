@@ -96,7 +96,7 @@ impl Model {
 
     /// Returns the rate of change of the flux linkage, V.
     #[inline]
-    fn flux_rate(&self, t_s: f64, current: f64, modes: Modes, drive: &Drive) -> f64 {
+    pub(super) fn flux_rate(&self, t_s: f64, current: f64, modes: Modes, drive: &Drive) -> f64 {
         match *drive {
             Drive::Source {
                 volts,
@@ -119,25 +119,25 @@ impl Model {
     /// Returns the rate of change of the flux linkage while the armature rests, V; the state itself, not a flag,
     /// decides whether the suppression conducts.
     pub fn resting_flux_rate(&self, t_s: f64, s: &State, drive: &Drive) -> f64 {
-        let current = self.still_current(s);
-        let conducting = self.flux_rate(t_s, current, Modes::default(), drive);
-        match drive {
-            Drive::Source { .. } => conducting,
-            Drive::Suppression { .. } => conducting.max(self.blocked_rate(current)),
-        }
+        let blocked = self.gap(Element::CoilBlocked, s, drive) > 0.0;
+        self.branch_flux_rate(t_s, s, drive, blocked)
+    }
+
+    /// Returns the rate of change of the flux linkage while the suppression conducts, or while it is `blocked`, V.
+    pub fn branch_flux_rate(&self, t_s: f64, s: &State, drive: &Drive, blocked: bool) -> f64 {
+        let mut modes = Modes::default();
+        modes.set(Element::CoilBlocked, blocked);
+        self.flux_rate(t_s, self.still_current(s), modes, drive)
     }
 
     /// Returns the time constant of the flux linkage while the armature rests, s: that of winding and eddy currents
-    /// together, or of eddy currents alone while the suppression blocks the coil current.
-    pub fn flux_time_s(&self, s: &State, flux_rate: f64, drive: &Drive) -> f64 {
+    /// together, or of eddy currents alone while the suppression is `blocked`.
+    pub fn flux_time_s(&self, s: &State, blocked: bool) -> f64 {
         let reluctance = self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]);
         let eddy = self.p.k_ec / reluctance;
-        let blocked = self.blocked_rate(self.still_current(s));
-        match drive {
-            Drive::Suppression { .. } if flux_rate <= blocked => eddy,
-            Drive::Source { .. } | Drive::Suppression { .. } => {
-                eddy + self.p.N * self.p.N / (self.ohm * reluctance)
-            }
+        match blocked {
+            true => eddy,
+            false => eddy + self.p.N * self.p.N / (self.ohm * reluctance),
         }
     }
 
@@ -146,11 +146,10 @@ impl Model {
         self.still_current(s) + self.p.k_ec * self.per_turns2 * flux_rate
     }
 
-    /// Returns the rates of change of the five states.
+    /// Returns the current that holds a flux linkage constant, A, and the pull of the magnet, N.
     #[inline]
-    pub fn rates(&self, t_s: f64, s: &State, modes: Modes, drive: &Drive) -> State {
+    pub(super) fn magnet(&self, lambda: f64, x: f64) -> (f64, f64) {
         let p = &self.p;
-        let [lambda, x, v, y, w] = *s;
         let (phi, gap) = (lambda * self.per_turns, p.X - x);
         let rest = 1.0 - phi.abs() * self.per_phis;
         let per_spread = 1.0 / self.spread(gap);
@@ -158,6 +157,17 @@ impl Model {
             true => (p.Rr + gap * per_spread) + p.Rc0 / rest,
             false => f64::NAN,
         };
+        let across = phi * per_spread;
+        let pull = 0.5 * self.mu_a * across * across;
+        (lambda * self.per_turns2 * reluctance, pull)
+    }
+
+    /// Returns the rates of change of the five states.
+    #[inline]
+    pub fn rates(&self, t_s: f64, s: &State, modes: Modes, drive: &Drive) -> State {
+        let p = &self.p;
+        let [lambda, x, v, y, w] = *s;
+        let (current, pull) = self.magnet(lambda, x);
         let leaf = p.k_l * (x + p.d0 - y) + p.c_l * (v - w);
         let mut load = p.F_r0 + p.k_r * x + p.c_a * v + leaf;
         let mut tip = leaf;
@@ -173,9 +183,8 @@ impl Model {
         if modes.is_engaged(Element::No) {
             tip -= self.contact.push(y - p.G, w);
         }
-        let across = phi * per_spread;
-        let armature = 0.5 * self.mu_a * across * across - load;
-        let flux = self.flux_rate(t_s, lambda * self.per_turns2 * reluctance, modes, drive);
+        let armature = pull - load;
+        let flux = self.flux_rate(t_s, current, modes, drive);
         let [per_armature, per_tip] = self.per_mass;
         [flux, v, armature * per_armature, w, tip * per_tip]
     }

@@ -2,17 +2,19 @@
 //! more on events, or miss them: `cargo bench -p rigsim --features peers --bench transient` compares them.
 //!
 //! - The flags are constant within a step. After the step the solver compares every gap function with its flag.
-//! - To locate a change it repeats the step with trial lengths (Illinois secant method), so the instant has the full
-//!   order of the method. Of several changes in one step, the earliest counts.
+//! - To locate a change it repeats the step with trial lengths ([`super::locate`]), so the instant has the full order
+//!   of the method. Of several changes in one step, the earliest counts.
 //! - Two opposite changes within one step leave the signs unchanged. A cubic through the overlap of a stop and its rate
 //!   at both ends of the step reveals them: where the cubic turns close to the touch, the step ends there.
 //! - The step after a change is short.
+//! - On request the leaf is condensed while it presses on a contact ([`super::condensed`]): then the steps need not
+//!   resolve the swing of its tip.
 
-use super::State;
 use super::coil::Drive;
 use super::dop853::{EVALUATIONS, Tolerance, TrialStep, step};
 use super::model::Model;
 use super::modes::{Element, Modes};
+use super::{State, Y};
 
 /// A change of a mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +50,8 @@ pub enum SolveError {
 
 /// First step, and longest step after an event, s; the contacts oscillate with periods of 50 us and longer.
 const SHORT_S: f64 = 1e-6;
+/// Longest step after the end of the condensation, s: half a radian of the swing of the tip.
+const RELEASED_S: f64 = 2e-5;
 /// Longest step, s: a few time constants of the flux.
 const LONG_S: f64 = 2e-3;
 /// Shortest useful step, s: the rounding of the instant itself.
@@ -72,6 +76,8 @@ pub struct Solver {
     pub steps: u64,
     tolerance: Tolerance,
     h: f64,
+    /// True while the leaf is condensed.
+    condensed: bool,
 }
 
 impl Solver {
@@ -85,6 +91,7 @@ impl Solver {
             steps: 0,
             tolerance: Tolerance { relative },
             h: SHORT_S,
+            condensed: false,
         }
     }
 
@@ -113,28 +120,80 @@ impl Solver {
             if tried.error.is_nan() || tried.error > 1.0 {
                 continue;
             }
+            if self.condensed && !model.keeps_pressing(&tried.state) {
+                self.release_leaf(model);
+                slope = self.rates(model, drive);
+                continue;
+            }
             let (h, state) = self.cut_at_graze(model, drive, &slope, h, tried.state);
             if let Some((h, state, element)) = self.first_change(model, drive, &slope, h, state) {
                 return Ok(Some(self.change(h, state, element)));
             }
             self.t_s = if h == whole { until_s } else { self.t_s + h };
             self.state = state;
+            if self.condensed {
+                self.state[Y] = model.resting_tip(&self.state);
+            }
             slope = self.rates(model, drive);
         }
         Ok(None)
     }
 
-    fn rates(&mut self, model: &Model, drive: &Drive) -> State {
-        self.evaluations += 1;
-        model.rates(self.t_s, &self.state, self.modes, drive)
+    /// Condenses the leaf if it presses on a contact and its tip follows the armature; until the pressure ends,
+    /// [`Self::advance`] integrates no inertia of the tip.
+    pub fn condense_leaf(&mut self, model: &Model) {
+        let presses = [Element::Nc, Element::No].map(|it| self.modes.is_engaged(it));
+        if !self.condensed && presses != [false, false] && model.tip_follows(&self.state) {
+            self.state[Y] = model.resting_tip(&self.state);
+            self.condensed = true;
+        }
     }
 
+    /// Puts an armature at rest on a stop, with its leaf, into this state; the flags follow from it.
+    pub fn rest(&mut self, model: &Model, drive: &Drive, state: State) {
+        self.state = state;
+        self.modes = model.modes(&state, drive);
+        self.condensed = false;
+    }
+
+    /// Gives the tip its own motion again.
+    fn release_leaf(&mut self, model: &Model) {
+        self.condensed = false;
+        self.state = model.with_following_tip(&self.state);
+        self.h = self.h.min(RELEASED_S);
+    }
+
+    fn rates(&mut self, model: &Model, drive: &Drive) -> State {
+        let state = self.state;
+        self.rates_at(model, drive, self.t_s, &state)
+    }
+
+    /// Returns the rates of change of a state at an instant, with the present flags.
+    pub(super) fn rates_at(&mut self, model: &Model, drive: &Drive, t_s: f64, s: &State) -> State {
+        self.evaluations += 1;
+        match self.condensed {
+            true => model.condensed_rates(t_s, s, self.modes, drive),
+            false => model.rates(t_s, s, self.modes, drive),
+        }
+    }
+
+    /// Tries a step of `h` seconds from the present state, whose rates of change are `slope`.
     #[inline]
-    fn attempt(&mut self, model: &Model, drive: &Drive, slope: &State, h: f64) -> TrialStep {
+    pub(super) fn attempt(
+        &mut self,
+        model: &Model,
+        drive: &Drive,
+        slope: &State,
+        h: f64,
+    ) -> TrialStep {
         self.evaluations += EVALUATIONS;
-        let modes = self.modes;
+        let (modes, at) = (self.modes, [self.t_s, h]);
+        if self.condensed {
+            let f = |t: f64, s: &State| model.condensed_rates(t, s, modes, drive);
+            return step(f, at, &self.state, slope, &self.tolerance);
+        }
         let f = |t: f64, s: &State| model.rates(t, s, modes, drive);
-        step(f, [self.t_s, h], &self.state, slope, &self.tolerance)
+        step(f, at, &self.state, slope, &self.tolerance)
     }
 
     /// Sets the length of the next step from the error of this one.
@@ -142,7 +201,8 @@ impl Solver {
         self.steps += 1;
         let factor = match error.is_nan() {
             true => 0.1,
-            false => (0.9 * error.max(1e-10).powf(-0.125)).clamp(0.33, 6.0),
+            // The eighth root: the error of a step grows with the eighth power of its length.
+            false => (0.9 / error.max(1e-10).sqrt().sqrt().sqrt()).clamp(0.33, 6.0),
         };
         let cut = h < self.h && error <= 1.0;
         self.h = if cut {
@@ -224,61 +284,12 @@ impl Solver {
         let (mut h, mut state) = (h, state);
         for element in Element::TOUCHING.into_iter().chain([Element::CoilBlocked]) {
             if (model.gap(element, &state, drive) > 0.0) != self.modes.is_engaged(element) {
-                (h, state) = self.locate(model, drive, slope, element, h, state);
+                (h, state) = self.locate(model, drive, slope, element, (h, state));
                 first = Some((h, state, element));
             }
         }
         first
     }
-
-    /// Returns the step length, at most `h`, at which the gap function of the element is zero, and the state
-    /// there. The gap function must have changed its sign by `h`.
-    fn locate(
-        &mut self,
-        model: &Model,
-        drive: &Drive,
-        slope: &State,
-        element: Element,
-        h: f64,
-        state: State,
-    ) -> (f64, State) {
-        let side = if self.modes.is_engaged(element) {
-            1.0
-        } else {
-            -1.0
-        };
-        let gap = |s: &State| side * model.gap(element, s, drive);
-        let (mut lo, mut low) = (0.0, gap(&self.state).max(0.0));
-        let (mut hi, mut high) = (h, gap(&state));
-        let (mut best, mut moved) = ((h, state), h);
-        let mut inside = None;
-        while high < 0.0 && hi - lo > exact(self.t_s) && moved > exact(self.t_s) {
-            let secant = hi - high * (hi - lo) / (high - low);
-            let at = if secant > lo && secant < hi {
-                secant
-            } else {
-                0.5 * (lo + hi)
-            };
-            let there = self.attempt(model, drive, slope, at).state;
-            let value = gap(&there);
-            moved = (at - best.0).abs();
-            best = (at, there);
-            if value > 0.0 {
-                (lo, low) = (at, value);
-                high *= if inside == Some(true) { 0.5 } else { 1.0 };
-            } else {
-                (hi, high) = (at, value);
-                low *= if inside == Some(false) { 0.5 } else { 1.0 };
-            }
-            inside = Some(value > 0.0);
-        }
-        best
-    }
-}
-
-/// Returns the accuracy to which an instant is located, s.
-fn exact(t_s: f64) -> f64 {
-    1e-15 + 4.0 * f64::EPSILON * t_s
 }
 
 /// Returns position and value of the minimum of the cubic through value and slope at 0 and 1; the slope is

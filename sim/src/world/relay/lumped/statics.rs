@@ -9,6 +9,12 @@
 use super::model::Model;
 use super::{State, X, Y};
 
+/// Relative size of a step of Newton's method after which it ends: it squares the error.
+const NEWTON: f64 = 1e-9;
+/// Step of the iteration of an armature on a stop after which it ends, relative to the travel: each divides the error
+/// by a thousand.
+const FIXED_POINT: f64 = 1e-12;
+
 /// One point of the quasi-static equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
@@ -116,7 +122,7 @@ impl Model {
         for _ in 0..60 {
             let excess = p.k_c * depth * depth.sqrt() + p.k_l * (depth - bent);
             let next = depth - excess / (self.contact.stiffness(depth) + p.k_l);
-            let done = (next - depth).abs() <= 1e-15 * depth;
+            let done = (next - depth).abs() <= NEWTON * depth;
             depth = next.max(0.0);
             if done {
                 break;
@@ -170,11 +176,21 @@ impl Model {
             let before = s;
             s[0] = self.p.N * self.flux_at(volts / self.ohm, self.p.X - s[X]);
             self.pressed(&mut s);
-            if s == before {
+            if (0..3).all(|i| (s[i] - before[i]).abs() <= 1e-15 * s[i].abs()) {
                 break;
             }
         }
         s
+    }
+
+    /// Returns the position of the tip, m, that balances the leaf on the contact nearer to it.
+    pub(super) fn resting_tip(&self, s: &State) -> f64 {
+        let p = &self.p;
+        let bent = s[X] + p.d0;
+        match s[Y] < 0.5 * p.G {
+            true => -self.leaf_overlap(-bent, -s[Y]),
+            false => p.G + self.leaf_overlap(bent - p.G, s[Y] - p.G),
+        }
     }
 
     /// Sets travel and leaf of an armature on a stop under the flux of the state; returns the force on that stop,
@@ -197,7 +213,7 @@ impl Model {
             let known = if seated { s[X] - p.X } else { -s[X] };
             let depth = self.stop.refine(known, push);
             s[X] = if seated { p.X + depth } else { -depth };
-            if (s[X] - before).abs() <= 1e-15 * p.X {
+            if (s[X] - before).abs() <= FIXED_POINT * p.X {
                 break;
             }
         }
