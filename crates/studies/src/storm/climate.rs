@@ -82,7 +82,7 @@ impl Climate {
 
     /// Draws a fault of the output circuit.
     pub fn circuit_fault(&self, dice: &mut Dice) -> &'static str {
-        *dice.one::<&str>(self.circuit)
+        dice.one::<&str>(self.circuit)
     }
 
     /// Draws a fault of an instrument, or of all, within a window of rig time (`FROM..UNTIL` in seconds).
