@@ -1,24 +1,21 @@
 //! Every fault of the chamber at random instants: how long the heater stays on, and what becomes of the parts.
 //!
-//! The command of the heater is on while its analog output carries a voltage and the main contactor is closed. A fault
-//! counts only when the command was on at its instant or came on later; parts that were judged before do not count.
+//! A fault counts only when the heater was commanded on at its instant or came on later; parts that were judged before do
+//! not count.
 
+use super::heat;
 use super::program::{Lot, Ran, run};
 use crate::dice::Dice;
 use crate::figure::{Bar, Figure};
 use crate::pool::{self, LOTS_AT_ONCE};
 use crate::storm::life::{EPOCH_US, End};
 use app::exit::Exit;
-use rigsim::journal::Entry;
 
 /// Recipe and number of parts.
 const RECIPE: &str = "thermostat-ksd9700";
 const PARTS: u64 = 6;
 /// Instants between which a fault strikes, s: from the first heat of the identification to the last descent.
 const INSTANTS_S: [u64; 2] = [420, 3_000];
-/// Module and channel of the heater; module and bit of the contactor.
-const HEATER: (&str, u8) = ("power_ao", 0);
-const CONTACTOR: (&str, u16) = ("relay_do", 1);
 /// Longest time of the heater after a fault that a sensor or the chain shows, and after one that only temperatures show, s.
 const SHOWN_S: f64 = 2.0;
 const HIDDEN_S: f64 = 60.0;
@@ -70,35 +67,10 @@ struct Struck {
 impl Struck {
     /// Returns the time after the fault at which the command of the heater was on last, s; `None` when it was never on.
     fn heats_s(&self) -> Option<f64> {
-        let (mut level, mut closed, mut last_us) = (false, false, None);
         let at_us = self.at_s * 1_000_000;
-        for entry in &self.ran.journal {
-            let (t_us, was_on) = match entry {
-                Entry::Level {
-                    t_us,
-                    module,
-                    channel,
-                    on,
-                } if (module.as_str(), *channel) == HEATER => {
-                    (*t_us, std::mem::replace(&mut level, *on) && closed)
-                }
-                Entry::Output { t_us, module, bits } if module == CONTACTOR.0 => (
-                    *t_us,
-                    std::mem::replace(&mut closed, bits & CONTACTOR.1 != 0) && level,
-                ),
-                Entry::Level { .. }
-                | Entry::Output { .. }
-                | Entry::Struck { .. }
-                | Entry::Expired { .. }
-                | Entry::Late { .. }
-                | Entry::CoilOverdriven(_)
-                | Entry::Contact(_) => continue,
-            };
-            if was_on && t_us > at_us {
-                last_us = Some(t_us);
-            }
-        }
-        last_us.map(|it| (it - at_us) as f64 / 1e6)
+        let ends = heat::heated(&self.ran.journal).into_iter().map(|it| it.end);
+        let last_us = ends.filter(|it| *it > at_us).max()?;
+        Some((last_us - at_us) as f64 / 1e6)
     }
 
     /// Returns true when an alarm has ended the lot.

@@ -9,6 +9,7 @@
 //! | `program` | coverage, verdicts and wall time of whole batches, with a slow bus too | the program on the simulated rig |
 //! | `faults` | time until the heater is off, verdicts | the program on the simulated rig |
 //! | `kills` | outputs after a kill, the next start | the program on the simulated rig |
+//! | `storm` | rules that hold under random faults and kills | the program on the simulated rig |
 //!
 //! The first three have no line and no module: each seed draws a chamber, its sensors, a lot and its sockets. The first
 //! batch of a lot measures the lag in two passes, the next one uses it in a single pass. Chain and map are calibrated. A
@@ -17,12 +18,14 @@
 
 mod elsewhere;
 mod faults;
+mod heat;
 mod kill;
 mod lots;
 mod program;
 mod rack;
 mod rig;
 mod score;
+mod storm;
 #[cfg(test)]
 mod tests;
 mod whole;
@@ -64,12 +67,14 @@ pub enum Section {
     Faults,
     /// Kills of the program while it heats
     Kills,
+    /// Rules under random faults and kills, by seed
+    Storm,
 }
 
 /// What the study is to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Scope {
-    /// Number of lots of each kind; other sections run a share of their usual number when it is below the usual 20.
+    /// Number of lots of each kind, and of storms; other sections run their usual number in proportion to the usual 20.
     pub seeds: u64,
     /// Number of sockets.
     pub sockets: usize,
@@ -82,10 +87,10 @@ impl Scope {
         self.only.is_none_or(|only| only == section)
     }
 
-    /// Returns a usual number of runs, reduced when the number of seeds is.
+    /// Returns a usual number of runs, in proportion to the number of seeds.
     fn of(&self, usual: u64) -> u64 {
         const SEEDS: u64 = 20;
-        (usual * self.seeds.min(SEEDS)).div_ceil(SEEDS).max(1)
+        (usual * self.seeds).div_ceil(SEEDS).max(1)
     }
 }
 
@@ -113,6 +118,12 @@ pub fn study(scope: &Scope) -> anyhow::Result<(Report, String)> {
         }
     }
     groups.extend(others(scope)?);
+    let mut notes = Vec::new();
+    if scope.has(Section::Storm) {
+        let (figures, broken) = storm::figures(scope.seeds)?;
+        groups.push(figures);
+        notes = broken;
+    }
     let about = format!(
         "{} lots x {} sockets of each kind, chain and map calibrated",
         scope.seeds, scope.sockets
@@ -129,7 +140,8 @@ pub fn study(scope: &Scope) -> anyhow::Result<(Report, String)> {
         y_title: "C".into(),
         series: curves,
     };
-    Ok((Report::new("thermostat", about, groups, chart), plot.svg()))
+    let report = Report::new("thermostat", about, groups, chart).noted(notes);
+    Ok((report, plot.svg()))
 }
 
 /// Runs the sections that have no kind of part.
