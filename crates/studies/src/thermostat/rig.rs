@@ -238,8 +238,8 @@ impl Running {
     }
 }
 
-/// Makes the device of the recipe on the rig that comes with the program, without slow repeats, and with the calibration of
-/// the study: a chain and sockets that need no correction, with the uncertainties from which their errors are drawn.
+/// Makes the device of the recipe on the rig that comes with the program, without slow repeats and passes for scatter, and
+/// with the calibration of the study: a chain and sockets that need no correction, with the uncertainties from which their errors are drawn.
 fn device(kind: Kind) -> anyhow::Result<Device> {
     let folder = Folder::built_in_rig("thermostat").context("a rig that comes with the program")?;
     let plant = Configuration::load(&folder)?;
@@ -248,6 +248,8 @@ fn device(kind: Kind) -> anyhow::Result<Device> {
     let DeviceRecipe::Thermostat(thermostat) = recipe.device.clone() else {
         anyhow::bail!("{} is no temperature relay", kind.recipe);
     };
+    let mut thermostat = thermostat;
+    thermostat.test.scatter_passes = 0;
     let points = Points::resolve(&plant.wiring)?;
     let device = Device::new(Arc::new(recipe), &thermostat, points, plant.accuracy);
     let right = |it| ChainPoint {
