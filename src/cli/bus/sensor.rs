@@ -6,6 +6,7 @@ use anyhow::Context;
 use app::exit::Exit;
 use dcon::{Sensor, TypeCode};
 use serde_json::{Value, json};
+use thiserror::Error;
 
 /// Temperatures without any in the arguments, C.
 const USUAL_C: [f64; 6] = [0.0, 25.0, 50.0, 85.0, 100.0, 150.0];
@@ -41,10 +42,15 @@ pub struct SensorArgs {
     celsius: Vec<f64>,
 }
 
-fn sensor(text: &str) -> Result<Sensor, String> {
+/// The text is no type code of a sensor that is known here.
+#[derive(Debug, Error)]
+#[error("found \"{0}\", expected 20, 21, 22, 23, 2E, 80 or 0F")]
+struct NoSensor(String);
+
+fn sensor(text: &str) -> Result<Sensor, NoSensor> {
     let code = u8::from_str_radix(text, 16).ok().map(TypeCode);
     let found = code.and_then(Sensor::of);
-    found.ok_or_else(|| format!("found \"{text}\", expected 20, 21, 22, 23, 2E, 80 or 0F"))
+    found.ok_or_else(|| NoSensor(text.to_owned()))
 }
 
 pub(super) fn run(args: &SensorArgs) -> anyhow::Result<Exit> {
