@@ -173,7 +173,7 @@ impl Case {
     /// A life that ended by itself has all rows, or none when trouble came before the parts got their numbers; one that
     /// is done has all.
     fn wrong_rows(&self) -> Option<String> {
-        let mut found: Vec<u64> = self.rows.iter().map(|it| it.seq as u64).collect();
+        let mut found: Vec<u64> = self.rows.iter().map(|it| it.seq).collect();
         found.sort_unstable();
         let is_whole = found.iter().copied().eq(1..=self.scenario.parts);
         let [first, _] = &self.lives;
