@@ -1,6 +1,6 @@
 //! Journal of the outputs: changes of digital outputs, analog outputs that go on or off, expiries of host watchdogs,
-//! faults that strike, overdriven coils, moves of the main contacts of a contactor, and replies that this computer
-//! sends late.
+//! faults that strike, overdriven coils, moves of the main contacts of a contactor, releases of the lock of a chamber and
+//! closings of its contactor, and replies that this computer sends late.
 //!
 //! The journal records at the terminals, between modules and world, so that it holds the signals that the actuators
 //! get. It is off until [`JournaledWorld::listen`].
@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::rig::WorldModel;
 use crate::scpi::circuit::Circuit;
 use crate::terminal::Plant;
-use crate::truth::{ContactMove, Overdrive, WorldRecord};
+use crate::truth::{ChamberMove, ContactMove, Overdrive, WorldRecord};
 
 /// One entry of the journal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -70,6 +70,8 @@ pub enum Entry {
     CoilOverdriven(Overdrive),
     /// The main contacts of a contactor have moved.
     Contact(ContactMove),
+    /// The lock of a chamber was released, or the contactor of its heater has closed.
+    Chamber(ChamberMove),
 }
 
 /// Level above which an analog output counts as on, V: more than the offset of a converter.
@@ -88,6 +90,8 @@ pub(crate) struct JournaledWorld {
     overdrives: usize,
     /// Number of moves of contacts in the journal.
     moves: usize,
+    /// Number of moves of a chamber in the journal.
+    chamber_moves: usize,
     late: LateReplies,
 }
 
@@ -111,6 +115,7 @@ impl JournaledWorld {
             on: BTreeMap::new(),
             overdrives: 0,
             moves: 0,
+            chamber_moves: 0,
             late: LateReplies::default(),
         }
     }
@@ -173,7 +178,7 @@ impl JournaledWorld {
         }
     }
 
-    /// Records the overdrives and moves of contacts since the last call.
+    /// Records the overdrives, moves of contacts and of a chamber since the last call.
     fn record_moves(&mut self) {
         let all = self.scene.overdrives();
         for overdrive in &all[self.overdrives..] {
@@ -185,6 +190,11 @@ impl JournaledWorld {
             self.send(Entry::Contact(*moved));
         }
         self.moves = all.len();
+        let all = self.scene.chamber_moves();
+        for moved in &all[self.chamber_moves..] {
+            self.send(Entry::Chamber(*moved));
+        }
+        self.chamber_moves = all.len();
     }
 
     /// Records when an analog output goes on or off.

@@ -31,6 +31,11 @@ pub trait WorldRecord {
         &[]
     }
 
+    /// Returns each time the lock of a chamber was released or its contactor closed, in order of time.
+    fn chamber_moves(&self) -> &[ChamberMove] {
+        &[]
+    }
+
     /// Removes and returns the texts that the code reader has sent so far.
     fn take_codes(&mut self) -> Vec<String> {
         Vec::new()
@@ -138,6 +143,17 @@ pub struct ContactMove {
     pub contactor: &'static str,
     /// True when the main contacts have closed, false when they have opened.
     pub closed: bool,
+}
+
+/// Release of the lock of a chamber, or closing of the contactor of its heater.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ChamberMove {
+    /// Rig time, microseconds.
+    pub t_us: u64,
+    /// Name of the output that has gone on.
+    pub output: &'static str,
+    /// True temperature of the rack, degrees Celsius.
+    pub rack_c: f64,
 }
 
 impl fmt::Display for Overdrive {

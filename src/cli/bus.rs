@@ -1,9 +1,10 @@
-//! `relayrig bus`: finds modules, sends one command, watches a line; needs no configuration.
+//! `relayrig bus`: finds modules, sends one command, watches a line, converts signals of sensors; needs no configuration.
 
 mod found;
 mod monitor;
 mod scan;
 mod send;
+mod sensor;
 
 use anyhow::Context;
 use app::exit::Exit;
@@ -19,7 +20,8 @@ use tokio_serial::SerialStream;
   relayrig bus send --port /dev/ttyUSB0 --baud 9600 --checksum '$012'
   relayrig bus monitor --port /dev/ttyUSB0 --baud 115200
   relayrig bus monitor --from http://127.0.0.1:8080
-  relayrig bus monitor --trace relayrig.alarm-1-motion.trace --level bytes")]
+  relayrig bus monitor --trace relayrig.alarm-1-motion.trace --level bytes
+  relayrig bus sensor --type 22 45 85 120")]
 pub struct BusArgs {
     #[command(subcommand)]
     command: BusCommand,
@@ -33,6 +35,8 @@ enum BusCommand {
     Send(send::SendArgs),
     /// Watch a line without sending, or read the trace of an alarm
     Monitor(monitor::MonitorArgs),
+    /// Convert temperatures to signals of a sensor, and back
+    Sensor(sensor::SensorArgs),
 }
 
 /// The port of the modules.
@@ -67,6 +71,7 @@ pub fn run(args: &BusArgs) -> anyhow::Result<Exit> {
             BusCommand::Scan(args) => scan::run(args).await,
             BusCommand::Send(args) => send::run(args).await,
             BusCommand::Monitor(args) => monitor::run(args).await,
+            BusCommand::Sensor(args) => sensor::run(args),
         }
     });
     super::unless_pipe_closed(done, Exit::Done)

@@ -202,7 +202,7 @@ first_order = { gain_k = 22.0, time_constant_s = 52.0, delay_s = 4.5 }
 [map]";
 
 /// Bad input: file, text in the file, text that replaces it, and the message of the program.
-const BAD: [[&str; 4]; 10] = [
+const BAD: [[&str; 4]; 11] = [
     [
         RIG,
         "02 = { module = \"socket_di_a\", channel = 1,",
@@ -250,6 +250,12 @@ const BAD: [[&str; 4]; 10] = [
         "learning_k_per_min = 5.0",
         "learning_k_per_min = 12.0",
         "[test].learning_k_per_min: found 12.0, expected a number of K/min from 0.1 to 10",
+    ],
+    [
+        RECIPE,
+        "scatter_passes = 3",
+        "scatter_passes = 1",
+        "[test].scatter_passes: found 1, expected at least 2: with a limit of repeatability_k",
     ],
     [
         REFEREE,

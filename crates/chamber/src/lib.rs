@@ -10,12 +10,11 @@
 //! | [`ramp`] | set point of S shape, which waits for a slow chamber |
 //! | [`program`] | passes of a batch: approach, rise, descent, fall |
 //! | [`plan`] | which passes a batch gets, and the windows that earlier passes have narrowed |
-//! | [`control`] | PID, fuzzy and fuzzy-PID, feed-forward that learns, heater and vent, door |
+//! | [`control`] | PID, fuzzy and fuzzy-PID, feed-forward that learns, heater and vent |
 //! | [`tune`] | identification by a step, relay auto-tune, settings |
 //! | [`lag`] | switching temperatures from instants, the lag of the parts taken out |
 //! | [`budget`] | uncertainty, with and without calibrations |
 //! | [`watch`] | plausibility of sensors, energy balance |
-//! | [`sensor`] | Pt100 and thermocouples of type K |
 //!
 //! A chamber that answers like its identification stays within 0.05 K of a ramp:
 //!
@@ -35,7 +34,7 @@
 //! ramp.head_for(60.0, 2.0);
 //! for _second in 0..600 {
 //!     let set = ramp.step(air_c);
-//!     let seen = Observed { measured_c: air_c, ambient_c: 25.0, door_open: false };
+//!     let seen = Observed { measured_c: air_c, ambient_c: 25.0 };
 //!     air_c += plant.step(controller.step(&set, &seen).heater);
 //!     past.push(set.value_c);
 //!     assert!((past[past.len() - 8] - air_c).abs() < 0.05);
@@ -50,7 +49,6 @@ pub mod lag;
 pub mod plan;
 pub mod program;
 pub mod ramp;
-pub mod sensor;
 mod statistics;
 #[cfg(test)]
 mod test_plant;

@@ -64,7 +64,6 @@ impl Plant {
         Observed {
             measured_c: (self.sensor_c * 100.0).round() / 100.0,
             ambient_c: AMBIENT_C,
-            door_open: self.door_open,
         }
     }
 }

@@ -35,6 +35,7 @@
 //! | `command.rs`, `request.rs`, `frame.rs` | requests: all of them as one enum, their fields, checksum and CR |
 //! | `reply.rs`, `shape.rs`, `fields.rs`, `error.rs` | replies: meanings, forms, fields, reasons why one is not accepted |
 //! | `reading.rs`, `level.rs`, `bits.rs`, `bounded.rs`, `type_code.rs`, `config.rs` | values, ranges, configuration |
+//! | `sensor/` | signals of Pt100 and type K at the terminals, to check a module |
 //! | `setting.rs` | whether a module already has a setting, because writing wears the EEPROM |
 //! | `agreement.rs` | selection of one answer among several to the same request |
 //! | `decode_request.rs`, `interpret.rs` | commands that a request may be; models; meaning of an exchange |
@@ -64,6 +65,7 @@ mod level;
 mod reading;
 mod reply;
 mod request;
+mod sensor;
 mod setting;
 mod shape;
 mod type_code;
@@ -90,6 +92,7 @@ pub use interpret::{Family, Model, factory_command, interpret};
 pub use level::{Level, LevelError, OutputForm};
 pub use reading::{Reading, Readings, Value};
 pub use reply::{Reply, Text};
+pub use sensor::Sensor;
 pub use type_code::{FullScale, TypeCode, Unit};
 
 /// Makes `cargo test` compile the example of the README.

@@ -71,7 +71,7 @@ impl Increment {
         let by = power_per_s * infer(table, task.error_k / error_k, change / change_k_per_s);
         let wanted = self.sum + task.forward;
         let stuck = by > 0.0 && wanted >= task.highest || by < 0.0 && wanted <= task.lowest;
-        if !task.frozen && !stuck {
+        if !stuck {
             self.sum += by;
         }
         (self.sum + task.forward).clamp(task.lowest, task.highest)
@@ -89,7 +89,6 @@ mod tests {
             forward,
             lowest: -0.2,
             highest: 1.0,
-            frozen: false,
         }
     }
 

@@ -4,7 +4,6 @@
 //! ([`SplitRange`]). [`Law`] lists the laws of the feedback; all take the same feed-forward, which does most of the
 //! work on a ramp.
 
-pub mod door;
 pub mod feed_forward;
 pub mod filter;
 pub mod fuzzy;
@@ -15,7 +14,6 @@ pub mod split_range;
 
 use crate::ramp::SetPoint;
 use crate::tune::{Identified, Settings};
-use door::DoorHold;
 use feed_forward::FeedForward;
 use filter::Delay;
 use increment::Increment;
@@ -37,8 +35,6 @@ pub struct Task {
     pub lowest: f64,
     /// Highest power.
     pub highest: f64,
-    /// True while the law must not integrate.
-    pub frozen: bool,
 }
 
 /// A feedback law with its state.
@@ -77,11 +73,9 @@ pub struct Observed {
     pub measured_c: f64,
     /// Temperature around the chamber, C.
     pub ambient_c: f64,
-    /// True while the door is open.
-    pub door_open: bool,
 }
 
-/// A controller: feed-forward, feedback law, split range and door.
+/// A controller: feed-forward, feedback law and split range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Controller {
     law: Law,
@@ -89,7 +83,6 @@ pub struct Controller {
     delay: Delay,
     split: SplitRange,
     vent: VentLag,
-    door: DoorHold,
 }
 
 impl Controller {
@@ -102,7 +95,6 @@ impl Controller {
             delay: Delay::of(0.0),
             split,
             vent: VentLag::default(),
-            door: DoorHold::default(),
         }
     }
 
@@ -131,7 +123,6 @@ impl Controller {
     /// Returns the command of this second. While a reading is not finite, the command is off and the law keeps its
     /// state.
     pub fn step(&mut self, set: &SetPoint, seen: &Observed) -> Command {
-        let frozen = self.door.step(seen.door_open);
         if !(seen.measured_c.is_finite() && seen.ambient_c.is_finite()) {
             return Command::OFF;
         }
@@ -143,15 +134,10 @@ impl Controller {
             forward: forward.unwrap_or(0.0),
             lowest: self.split.lowest(seen),
             highest: 1.0,
-            frozen,
         };
         let power = self.law.step(&task);
-        if let Some(forward) = self.forward.as_mut().filter(|_| !frozen) {
+        if let Some(forward) = self.forward.as_mut() {
             self.law.shift(forward.learn(set, power, &task));
-        }
-        if seen.door_open {
-            self.vent = VentLag::default();
-            return Command::OFF;
         }
         self.vent.step(self.split, power, seen)
     }

@@ -58,9 +58,7 @@ impl Pid {
         let wanted =
             gain * task.error_k + self.integral - gain * derivative_s * slope + task.forward;
         let power = wanted.clamp(task.lowest, task.highest);
-        if !task.frozen {
-            self.integral += gain / integral_s * task.error_k + (power - wanted) / TRACKING_S;
-        }
+        self.integral += gain / integral_s * task.error_k + (power - wanted) / TRACKING_S;
         power
     }
 }
@@ -82,7 +80,6 @@ mod tests {
             forward: 0.0,
             lowest: 0.0,
             highest: 1.0,
-            frozen: false,
         }
     }
 
@@ -107,19 +104,6 @@ mod tests {
         }
         let back = (0..60).position(|_| pid.step(&task(-0.5)) < 0.5);
         assert!(back.is_some());
-    }
-
-    #[test]
-    fn a_frozen_integral_stays() {
-        let mut pid = Pid::new(SETTINGS);
-        let frozen = Task {
-            frozen: true,
-            ..task(5.0)
-        };
-        for _ in 0..100 {
-            pid.step(&frozen);
-        }
-        assert_eq!(pid.step(&task(0.0)), 0.0);
     }
 
     #[test]

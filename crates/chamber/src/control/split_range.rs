@@ -114,7 +114,6 @@ mod tests {
         Observed {
             measured_c,
             ambient_c: 25.0,
-            door_open: false,
         }
     }
 

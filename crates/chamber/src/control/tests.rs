@@ -131,25 +131,6 @@ fn half_a_heater_is_learnt_on_one_ramp() {
 }
 
 #[test]
-fn an_open_door_switches_the_heater_off() {
-    let (_, mut controller) = all_laws().swap_remove(0);
-    let (mut plant, mut ramp) = (Plant::at(60.0), Ramp::at(60.0));
-    run(&mut plant, &mut controller, &mut ramp, 600);
-    plant.door_open = true;
-    let command = controller.step(&ramp.now(), &plant.seen());
-    assert_eq!((command.heater, command.vent), (0.0, 0.0));
-    run(&mut plant, &mut controller, &mut ramp, 20);
-    plant.door_open = false;
-    let after = run(&mut plant, &mut controller, &mut ramp, 400);
-    let hottest = after
-        .iter()
-        .map(|(seen, _)| seen.measured_c)
-        .fold(0.0, f64::max);
-    assert!(hottest < 61.0, "{hottest}");
-    assert!((after[399].0.measured_c - 60.0).abs() < 0.2);
-}
-
-#[test]
 fn the_relay_finds_a_gain_that_keeps_the_chamber_calm() {
     let chamber = identified();
     let split = SplitRange::of(&chamber);

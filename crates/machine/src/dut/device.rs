@@ -111,6 +111,12 @@ pub trait DeviceUnderTest {
         Vec::new()
     }
 
+    /// Returns the thermometers on surfaces that give off heat, such as a heater. While one of these reads hot, the rack
+    /// does not count as cool: the fan runs on and the door stays locked. One without a reading decides nothing.
+    fn hot_surfaces(&self) -> Vec<Thermometer> {
+        Vec::new()
+    }
+
     /// Returns when the calibration in force expires, microseconds since 1970 UTC; `None` for a kind without
     /// calibration.
     fn due_at_us(&self) -> Option<i64> {

@@ -27,6 +27,8 @@ pub struct MockDevice {
     pub longest: Span,
     /// Thermometers in the air around the rack.
     pub air: Vec<Thermometer>,
+    /// Thermometers on surfaces that give off heat.
+    pub surfaces: Vec<Thermometer>,
     /// Sockets whose parts cannot be judged.
     pub void: Vec<u16>,
     /// Troubles that each test reports at its end.
@@ -55,6 +57,10 @@ impl DeviceUnderTest for MockDevice {
 
     fn air_thermometers(&self) -> Vec<Thermometer> {
         self.air.clone()
+    }
+
+    fn hot_surfaces(&self) -> Vec<Thermometer> {
+        self.surfaces.clone()
     }
 
     fn cooling(&self, on: bool) -> Vec<Act> {

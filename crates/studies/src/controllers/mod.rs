@@ -13,7 +13,7 @@
 //! | `weak`, `weak_over` | error and excess with half of the heater power, at 5 K/min, K |
 //! | `strong_sd` | standard deviation of a hold with one and a half times the heater power, K |
 //! | `seed` | drawn chamber of the value |
-//! | `door_s`, `door_over` | recovery to 0.5 K after 20 s of open door, and excess, K; the controller has no door switch |
+//! | `door_s`, `door_over` | recovery to 0.5 K after 20 s of open door, and excess, K; on a rig the door ends the batch |
 
 pub mod contender;
 pub mod plant;
@@ -36,8 +36,6 @@ use trial::{Tracked, Trial};
 const RATES: [(f64, f64, f64); 3] = [(1.0, 0.10, 0.06), (2.0, 0.15, 0.12), (5.0, 0.30, 0.25)];
 /// Greatest slope over a minute that a referee standard allows, K/min.
 const REFEREE_BAR: f64 = 0.556;
-/// Bar of the excess after an open door for a controller with a door switch, K.
-const DOOR_BAR_K: f64 = 0.3;
 /// Number of randomly drawn chambers.
 const CHAMBERS: u64 = 20;
 /// Share of the heater power in the trials with a weak heater.
@@ -51,8 +49,8 @@ struct Row {
     tracked: [Tracked; 3],
     weak: Tracked,
     strong_sd_k: f64,
-    /// Recovery (s) and excess (K) after the open door, without and with a door switch.
-    door: [[f64; 2]; 2],
+    /// Recovery (s) and excess (K) after the open door.
+    door: [f64; 2],
 }
 
 /// Compares the controllers; returns the report, and the errors along the ramp at 5 K/min as SVG.
@@ -64,7 +62,6 @@ pub fn study() -> anyhow::Result<(Report, String)> {
     let rows = pool::map(&CONTENDERS, LOTS_AT_ONCE, |it| Ok(row(*it, &air)))?;
     let mut groups = vec![
         rows.iter().map(compared).collect(),
-        known_door(&rows),
         learnt(&air),
         bars(&rows, &air),
         spread()?,
@@ -104,24 +101,20 @@ fn nominal(contender: Contender, medium: Medium, chamber: &Identified, mains: f6
 fn row(contender: Contender, chamber: &Identified) -> Row {
     let trial = |mains| nominal(contender, Medium::Air, chamber, mains);
     let tracked = RATES.map(|(rate, _, _)| trial(1.0).track(rate));
-    let door = [false, true].map(|knows_door| {
-        let mut trial = trial(1.0);
-        trial.track(5.0);
-        trial.knows_door = knows_door;
-        trial.door()
-    });
+    let mut opened = trial(1.0);
+    opened.track(5.0);
     Row {
         contender,
         tracked,
         weak: trial(WEAK).track(5.0),
         strong_sd_k: trial(STRONG).track(5.0).hold_sd_k,
-        door,
+        door: opened.door(),
     }
 }
 
 fn compared(row: &Row) -> Figure {
     let [one, two, five] = &row.tracked;
-    let [unknown, _] = row.door;
+    let [recovery_s, excess_k] = row.door;
     Figure::new(row.contender.name, 1, Some(five.worst_k), "K")
         .with("at_1", Some(one.worst_k))
         .with("at_2", Some(two.worst_k))
@@ -132,23 +125,8 @@ fn compared(row: &Row) -> Figure {
         .with("weak", Some(row.weak.worst_k))
         .with("weak_over", Some(row.weak.overshoot_k))
         .with("strong_sd", Some(row.strong_sd_k))
-        .with("door_s", Some(unknown[0]))
-        .with("door_over", Some(unknown[1]))
-}
-
-/// Returns the excess after the open door for controllers with a door switch.
-fn known_door(rows: &[Row]) -> Vec<Figure> {
-    let one = |row: &Row| {
-        let [_, known] = row.door;
-        let name = format!("excess after a known door, {}", row.contender.name);
-        let figure = Figure::new(name, 1, Some(known[1]), "K").with("door_s", Some(known[0]));
-        if row.contender.name == DEFAULT {
-            figure.bar(Bar::AtMost(DOOR_BAR_K))
-        } else {
-            figure
-        }
-    };
-    rows.iter().map(one).collect()
+        .with("door_s", Some(recovery_s))
+        .with("door_over", Some(excess_k))
 }
 
 /// Returns the errors on the second ramp with a weak and a strong heater; on the first ramp the controller learns the

@@ -144,7 +144,6 @@ impl Plant {
         Observed {
             measured_c: self.control_c,
             ambient_c: self.chamber.values().ambient_c,
-            door_open: false,
         }
     }
 

@@ -55,8 +55,6 @@ pub struct Trial {
     ramp: Ramp,
     /// Set points of the last seconds, which the feedback follows with a delay.
     past_c: Vec<f64>,
-    /// True when the controller has a door switch.
-    pub knows_door: bool,
 }
 
 impl Trial {
@@ -72,7 +70,6 @@ impl Trial {
             controller: contender.controller(chamber),
             plant,
             past_c: vec![ENDS_C[0]; delay_s + 1],
-            knows_door: false,
         };
         trial.run(BEFORE_S);
         trial
@@ -81,10 +78,7 @@ impl Trial {
     fn second(&mut self) -> Moment {
         let seen = self.plant.seen();
         let set = self.ramp.step(seen.measured_c);
-        let door_open = self.knows_door && self.plant.door_open;
-        let command = self
-            .controller
-            .step(&set, &chamber::control::Observed { door_open, ..seen });
+        let command = self.controller.step(&set, &seen);
         self.plant.step(command);
         self.past_c.rotate_left(1);
         let last = self.past_c.len() - 1;

@@ -1,16 +1,15 @@
 //! Every fault of the chamber at random instants: how long the heater stays on, and what becomes of the parts.
 //!
-//! The command of the heater is on while its analog output carries a voltage and the main contactor is closed. A fault
-//! counts only when the command was on at the instant of the fault or came on later. Parts that were judged before the
-//! fault do not count.
+//! A fault counts only when the command of the heater was on at the instant of the fault or came on later. Parts that
+//! were judged before the fault do not count.
 
+use super::heat;
 use super::program::{Lot, Ran, run};
 use crate::dice::Dice;
 use crate::figure::{Bar, Figure};
 use crate::pool::{self, LOTS_AT_ONCE};
 use crate::storm::life::{EPOCH_US, End};
 use app::exit::Exit;
-use rigsim::journal::Entry;
 
 /// Recipe of the lots.
 const RECIPE: &str = "thermostat-ksd9700";
@@ -18,10 +17,6 @@ const RECIPE: &str = "thermostat-ksd9700";
 const PARTS: u64 = 6;
 /// Instants between which a fault strikes, s: from the first heat of the identification to the last descent.
 const INSTANTS_S: [u64; 2] = [420, 3_000];
-/// Module and channel of the analog output that commands the heater.
-const HEATER: (&str, u8) = ("power_ao", 0);
-/// Module and bit of the output that closes the main contactor.
-const CONTACTOR: (&str, u16) = ("relay_do", 1);
 /// Longest time for which the heater may stay on after a fault that a sensor or the safety chain shows, s.
 const SHOWN_S: f64 = 2.0;
 /// The same after a fault that only the temperatures show, s.
@@ -75,35 +70,10 @@ impl Struck {
     /// Returns the time from the fault to the last instant at which the command of the heater was on, s; `None` when it
     /// was never on after the fault.
     fn heats_s(&self) -> Option<f64> {
-        let (mut level, mut closed, mut last_us) = (false, false, None);
         let at_us = self.at_s * 1_000_000;
-        for entry in &self.ran.journal {
-            let (t_us, was_on) = match entry {
-                Entry::Level {
-                    t_us,
-                    module,
-                    channel,
-                    on,
-                } if (module.as_str(), *channel) == HEATER => {
-                    (*t_us, std::mem::replace(&mut level, *on) && closed)
-                }
-                Entry::Output { t_us, module, bits } if module == CONTACTOR.0 => (
-                    *t_us,
-                    std::mem::replace(&mut closed, bits & CONTACTOR.1 != 0) && level,
-                ),
-                Entry::Level { .. }
-                | Entry::Output { .. }
-                | Entry::Struck { .. }
-                | Entry::Expired { .. }
-                | Entry::Late { .. }
-                | Entry::CoilOverdriven(_)
-                | Entry::Contact(_) => continue,
-            };
-            if was_on && t_us > at_us {
-                last_us = Some(t_us);
-            }
-        }
-        last_us.map(|it| (it - at_us) as f64 / 1e6)
+        let ends = heat::heated(&self.ran.journal).into_iter().map(|it| it.end);
+        let last_us = ends.filter(|it| *it > at_us).max()?;
+        Some((last_us - at_us) as f64 / 1e6)
     }
 
     /// Returns true when an alarm has ended the lot.

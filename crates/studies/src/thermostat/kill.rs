@@ -79,7 +79,8 @@ impl Watch {
                 | Entry::Struck { .. }
                 | Entry::Late { .. }
                 | Entry::CoilOverdriven(_)
-                | Entry::Contact(_) => {}
+                | Entry::Contact(_)
+                | Entry::Chamber(_) => {}
             }
         }
         (states, expired)
@@ -87,7 +88,10 @@ impl Watch {
 }
 
 /// Returns the temperature of the rack as its module reports it, C.
-fn rack_c(rig: &SharedRig) -> anyhow::Result<f64> {
+///
+/// # Errors
+/// Fails without a reply, or when it holds no reading.
+pub fn rack_c(rig: &SharedRig) -> anyhow::Result<f64> {
     let reply = rig.exchange(0, RACK, rig.now_us());
     let reply = reply.context("no reply of the thermometer in the rack")?;
     let text = String::from_utf8_lossy(&reply.bytes).into_owned();

@@ -9,6 +9,7 @@
 //! | `program` | coverage, verdicts and wall time of whole batches, with a slow bus too | the program on the simulated rig |
 //! | `faults` | time until the heater is off, verdicts | the program on the simulated rig |
 //! | `kills` | outputs after a kill, the next start | the program on the simulated rig |
+//! | `storm` | rules that hold under random faults and kills | the program on the simulated rig |
 //!
 //! The first three sections have no line and no module: each seed draws a chamber, its sensors, a lot and its sockets.
 //! The first batch of a lot measures the lag in two passes; the next one uses this lag in a single pass. The measuring
@@ -18,12 +19,14 @@
 
 mod elsewhere;
 mod faults;
+mod heat;
 mod kill;
 mod lots;
 mod program;
 mod rack;
 mod rig;
 mod score;
+mod storm;
 #[cfg(test)]
 mod tests;
 mod whole;
@@ -65,13 +68,15 @@ pub enum Section {
     Faults,
     /// Kills of the program while it heats
     Kills,
+    /// Rules under random faults and kills, by seed
+    Storm,
 }
 
 /// What the study is to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Scope {
-    /// Number of lots of each kind in section `accuracy`. Below the usual 20, every other section reduces its runs in
-    /// the same ratio.
+    /// Number of lots of each kind in section `accuracy`, and of storms. Every other section changes its number of runs
+    /// in the ratio of this number to the usual 20.
     pub seeds: u64,
     /// Number of sockets.
     pub sockets: usize,
@@ -84,10 +89,10 @@ impl Scope {
         self.only.is_none_or(|only| only == section)
     }
 
-    /// Returns a number of runs, reduced in the ratio of the seeds to their usual number; at least 1.
+    /// Returns a number of runs, changed in the ratio of the seeds to their usual number; at least 1.
     fn of(&self, usual: u64) -> u64 {
         const SEEDS: u64 = 20;
-        (usual * self.seeds.min(SEEDS)).div_ceil(SEEDS).max(1)
+        (usual * self.seeds).div_ceil(SEEDS).max(1)
     }
 }
 
@@ -115,6 +120,12 @@ pub fn study(scope: &Scope) -> anyhow::Result<(Report, String)> {
         }
     }
     groups.extend(others(scope)?);
+    let mut notes = Vec::new();
+    if scope.has(Section::Storm) {
+        let (figures, broken) = storm::figures(scope.seeds)?;
+        groups.push(figures);
+        notes = broken;
+    }
     let about = format!(
         "{} lots x {} sockets of each kind, chain and map calibrated",
         scope.seeds, scope.sockets
@@ -131,7 +142,8 @@ pub fn study(scope: &Scope) -> anyhow::Result<(Report, String)> {
         y_title: "C".into(),
         series: curves,
     };
-    Ok((Report::new("thermostat", about, groups, chart), plot.svg()))
+    let report = Report::new("thermostat", about, groups, chart).noted(notes);
+    Ok((report, plot.svg()))
 }
 
 /// Runs the sections that do not run once for each kind of part.

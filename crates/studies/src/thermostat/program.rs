@@ -107,8 +107,11 @@ pub fn run(lot: &Lot) -> anyhow::Result<Ran> {
     })
 }
 
-/// Returns the configuration of the rig that comes with the program, with these changes.
-fn folder(place: &Path, changes: &[Change]) -> anyhow::Result<Folder> {
+/// Returns the configuration of the rig that comes with the program, with these changes; `place` takes the changed files.
+///
+/// # Errors
+/// Fails when a change does not fit, or a file cannot be written.
+pub fn folder(place: &Path, changes: &[Change]) -> anyhow::Result<Folder> {
     let built_in =
         Folder::built_in_rig("thermostat").context("a rig that comes with the program")?;
     let Folder::Memory(memory) = &built_in else {

@@ -239,9 +239,9 @@ impl Running {
     }
 }
 
-/// Makes the device of the recipe on the rig that comes with the program, without confirmation measurements. In its
-/// calibration, measuring chain and sockets need no correction; their uncertainties are those with which the study
-/// draws their errors.
+/// Makes the device of the recipe on the rig that comes with the program, without confirmation measurements and without
+/// the passes that show scatter. In its calibration, measuring chain and sockets need no correction; their
+/// uncertainties are those with which the study draws their errors.
 fn device(kind: Kind) -> anyhow::Result<Device> {
     let folder = Folder::built_in_rig("thermostat").context("a rig that comes with the program")?;
     let plant = Configuration::load(&folder)?;
@@ -250,6 +250,8 @@ fn device(kind: Kind) -> anyhow::Result<Device> {
     let DeviceRecipe::Thermostat(thermostat) = recipe.device.clone() else {
         anyhow::bail!("{} is no temperature relay", kind.recipe);
     };
+    let mut thermostat = thermostat;
+    thermostat.test.scatter_passes = 0;
     let points = Points::resolve(&plant.wiring)?;
     let device = Device::new(Arc::new(recipe), &thermostat, points, plant.accuracy);
     let right = |it| ChainPoint {

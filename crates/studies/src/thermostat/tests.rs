@@ -72,3 +72,8 @@ fn a_killed_batch_is_safe_and_restarts_cold() {
     );
     assert!(found.ended.is_empty(), "{found:?}");
 }
+
+#[test]
+fn storms_over_batches_break_no_rule() {
+    assert_eq!(storm::storms(1..=3).unwrap(), []);
+}

@@ -25,6 +25,7 @@ pub mod wiring;
 
 use crate::config::{ConfigError, RigFile, read_rig, read_world};
 use crate::terminal::Plant;
+use crate::truth::ChamberMove;
 use crate::world::WorldOptions;
 use crate::world::draw::{Draw, Subject};
 use crate::world::oven::{Chamber, Drive, SensorValues};
@@ -65,6 +66,8 @@ pub struct OvenWorld {
     lot: Lot,
     supply: Supply,
     faults: Pending,
+    /// Releases of the lock and closings of the contactor so far.
+    moves: Vec<ChamberMove>,
     noise: Draw,
     now_us: u64,
     /// End of the last step: `now_us`, or less than a step later.
@@ -166,6 +169,7 @@ impl OvenWorld {
                 ..Supply::default()
             },
             faults: Pending::default(),
+            moves: Vec::new(),
             noise: Draw::new(options.seed, Subject::ChamberNoise, 0),
             now_us: 0,
             done_us: 0,
@@ -384,7 +388,15 @@ impl Plant for OvenWorld {
         self.catch_up();
         for (channel, wire) in on(&self.wiring.outputs, module) {
             let is_on = (bits >> channel & 1 == 1) != wire.active_low;
+            let goes_on = is_on && !self.commands.is_on(wire.signal);
             self.commands.set(wire.signal, is_on);
+            if goes_on && matches!(wire.signal, Out::MainContactor | Out::DoorLockRelease) {
+                self.moves.push(ChamberMove {
+                    t_us: self.now_us,
+                    output: wire.signal.name(),
+                    rack_c: self.chamber.temperatures().rack_c,
+                });
+            }
         }
     }
 

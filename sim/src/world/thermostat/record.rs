@@ -4,7 +4,7 @@ use super::fault::Fault;
 use super::lot::Lot;
 use super::{OvenWorld, Supply};
 use crate::error::SimError;
-use crate::truth::WorldRecord;
+use crate::truth::{ChamberMove, WorldRecord};
 use crate::world::WorldOptions;
 
 impl WorldRecord for OvenWorld {
@@ -13,6 +13,10 @@ impl WorldRecord for OvenWorld {
         truths
             .filter_map(|it| serde_json::to_value(it).ok())
             .collect()
+    }
+
+    fn chamber_moves(&self) -> &[ChamberMove] {
+        &self.moves
     }
 
     fn cancel_faults(&mut self) {

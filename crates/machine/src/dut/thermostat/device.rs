@@ -128,6 +128,10 @@ impl DeviceUnderTest for Device {
         vec![self.points.reference, self.points.control]
     }
 
+    fn hot_surfaces(&self) -> Vec<Thermometer> {
+        self.points.surface.into_iter().collect()
+    }
+
     fn due_at_us(&self) -> Option<i64> {
         self.due_at_us
     }

@@ -20,6 +20,9 @@ const RESERVE_K: f64 = 5.0;
 /// Temperature of a room, C.
 const ROOM_C: f64 = 23.0;
 
+/// Least number of passes from which repeatability is judged: the three cycles of MIL-PRF-24236.
+const LEAST_CYCLES: usize = 3;
+
 /// Share of the heater that a ramp may use: the controller needs the rest, and the mains may be low.
 const MOST_POWER: f64 = 0.85;
 
@@ -42,6 +45,7 @@ pub fn faults(recipe: &ThermostatRecipe, limits: &Limits, rig: &Rig) -> Vec<Faul
     .filter_map(|of| narrow(of, limits, &least))
     .collect();
     found.extend(claimed(recipe, limits, &least));
+    found.extend(too_few_passes(recipe, limits));
     found.extend(out_of_range(recipe, &windows, &points, rig.wiring));
     found.extend(rates(recipe));
     found.extend(too_fast(recipe, &windows, rig));
@@ -151,6 +155,20 @@ fn claimed(recipe: &ThermostatRecipe, limits: &Limits, least: &Least) -> Option<
         .fold(0.0, f64::max);
     let expected = format!("at least {u_k:.2} K {}", least.why);
     (claimed_k < u_k).then(|| Fault::new("test.claimed_u_k", claimed_k, expected))
+}
+
+/// Returns the fault of a limit of the repeatability in batches whose few passes show no scatter.
+fn too_few_passes(recipe: &ThermostatRecipe, limits: &Limits) -> Option<Fault> {
+    let test = &recipe.test;
+    let is_judged = !limits.of(Parameter::Repeatability).is_open();
+    (is_judged && test.least_passes() < LEAST_CYCLES).then(|| {
+        let expected = format!(
+            "at least {}: with a limit of repeatability_k each batch needs {LEAST_CYCLES} passes, and test.passes is {}",
+            LEAST_CYCLES.saturating_sub(test.passes),
+            test.passes
+        );
+        Fault::new("test.scatter_passes", test.scatter_passes, expected)
+    })
 }
 
 /// Returns the fault of a window that a thermometer of the chamber does not reach, or that leaves no room for its ramp.

@@ -77,6 +77,7 @@ const TEST: &[Key] = table! {
     key("learning_k_per_min", from_to(0.1, 10.0, "K/min"), "station", "rate of the first pass of a batch that measures the lag");
     key("rate_k_per_min", from_to(0.1, 10.0, "K/min"), "station", "rate of the other passes");
     key("passes", whole(1, 10, ""), "station", "passes at rate_k_per_min in each batch");
+    optional("scatter_passes", whole(0, 10, ""), "station", "passes at learning_k_per_min before these in each batch, so that a part that scatters shows it; default 0");
     key("learning_every", whole(1, 100, ""), "station", "batches from one that measures the lag to the next; the first one does");
     key("beyond_k", from_to(1.0, 50.0, "K"), "station", "by how much a pass goes beyond the limits to find parts outside");
     optional("claimed_u_k", from_to(0.05, 10.0, "K"), "gauge", "expanded uncertainty (k = 2) that results of the recipe must keep; refused when the rig cannot");

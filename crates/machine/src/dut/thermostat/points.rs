@@ -26,6 +26,8 @@ const HEATER: &str = "heater_power";
 const VENT: &str = "vent_opening";
 const CONTROL: &str = "control_temperature";
 const REFERENCE: &str = "reference_temperature";
+/// Surface of the heater; a rig may lack it.
+const SURFACE: &str = "heater_temperature";
 
 /// The points that `config/rig.toml` of a rig with a chamber must wire.
 pub const FIXTURE: Fixture = Fixture {
@@ -49,7 +51,7 @@ pub const FIXTURE: Fixture = Fixture {
         ranged: false,
     }],
     analog_out: &[HEATER, VENT],
-    temperature: &[CONTROL, REFERENCE, "heater_temperature"],
+    temperature: &[CONTROL, REFERENCE, SURFACE],
     counter: &[],
 };
 
@@ -85,6 +87,8 @@ pub struct Points {
     pub control: Thermometer,
     /// Reference thermometer, beside the parts.
     pub reference: Thermometer,
+    /// Thermometer on the surface of the heater; `None` on a rig without one.
+    pub surface: Option<Thermometer>,
     /// Sockets of the rack.
     pub sockets: Vec<Socket>,
 }
@@ -115,6 +119,7 @@ impl Points {
             vent,
             control,
             reference,
+            surface: wiring.thermometer(SURFACE),
             sockets: wiring.rack().map_or(Vec::new(), |it| it.sockets().to_vec()),
         })
     }

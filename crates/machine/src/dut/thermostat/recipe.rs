@@ -58,6 +58,10 @@ pub struct TestPlan {
     pub rate_k_per_min: f64,
     /// Number of passes at `rate_k_per_min` in each batch.
     pub passes: usize,
+    /// Number of passes at `learning_k_per_min` before these in each batch, so that a part that scatters shows it; a batch
+    /// that measures the lag has at least one.
+    #[serde(default)]
+    pub scatter_passes: usize,
     /// Number of batches from one that measures the lag to the next.
     pub learning_every: usize,
     /// Distance by which the windows extend beyond the limits, K.
@@ -71,6 +75,18 @@ pub struct TestPlan {
     /// Law of the feedback.
     #[serde(default)]
     pub control: Control,
+}
+
+impl TestPlan {
+    /// Returns true when the passes of a batch that measures the lag have two rates; a single rate tells no lag.
+    pub fn has_two_rates(&self) -> bool {
+        self.learning_k_per_min != self.rate_k_per_min
+    }
+
+    /// Returns the number of passes that every batch has.
+    pub fn least_passes(&self) -> usize {
+        self.scatter_passes + self.passes
+    }
 }
 
 impl ThermostatRecipe {
@@ -89,15 +105,17 @@ impl ThermostatRecipe {
 
     /// Returns the strategy that chooses the passes of each batch.
     pub fn strategy(&self) -> Strategy {
-        let known = vec![self.test.rate_k_per_min; self.test.passes];
-        let fast = (self.test.learning_k_per_min != self.test.rate_k_per_min)
-            .then_some(self.test.learning_k_per_min);
+        let test = &self.test;
+        let after = |fast: usize| {
+            let fast = vec![test.learning_k_per_min; fast];
+            [fast, vec![test.rate_k_per_min; test.passes]].concat()
+        };
+        let for_lag = usize::from(test.has_two_rates());
         Strategy {
-            learning: fast.into_iter().chain(known.clone()).collect(),
-            known,
-            every: self.test.learning_every,
-            repeat: (self.test.rate_k_per_min / 2.0)
-                .max(LEAST_REPEAT.min(self.test.rate_k_per_min)),
+            learning: after(test.scatter_passes.max(for_lag)),
+            known: after(test.scatter_passes),
+            every: test.learning_every,
+            repeat: (test.rate_k_per_min / 2.0).max(LEAST_REPEAT.min(test.rate_k_per_min)),
         }
     }
 }
@@ -160,5 +178,35 @@ impl KindRecipe for ThermostatRecipe {
 
     fn made_up(&self, limits: &Limits) -> MadeUp {
         made_up::made_up(limits)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::dut::recipe::DeviceRecipe;
+
+    const KSD9700: &str =
+        include_str!("../../../../../config/rigs/thermostat/recipes/thermostat-ksd9700.toml");
+
+    /// Returns the rates of a batch that measures the lag and of another one, K/min.
+    fn rates(scatter_passes: usize) -> [Vec<f64>; 2] {
+        let recipe: Recipe = toml::from_str(KSD9700).unwrap();
+        let DeviceRecipe::Thermostat(mut thermostat) = recipe.device else {
+            panic!("a temperature relay");
+        };
+        thermostat.test.scatter_passes = scatter_passes;
+        let Strategy {
+            learning, known, ..
+        } = thermostat.strategy();
+        [learning, known]
+    }
+
+    #[test]
+    fn every_batch_has_its_passes_for_scatter() {
+        let fast_then_slow = vec![5.0, 5.0, 5.0, 2.0];
+        assert_eq!(rates(3), [fast_then_slow.clone(), fast_then_slow]);
+        assert_eq!(rates(0), [vec![5.0, 2.0], vec![2.0]]);
     }
 }

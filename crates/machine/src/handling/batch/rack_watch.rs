@@ -1,7 +1,8 @@
 //! Watches the temperature of the rack while no test runs, and carries out the acts that cool it.
 //!
-//! A rack that may be hot becomes cool when its own thermometer and one in the air around it say so. From then on its
-//! own thermometer alone decides, because walls warm the still air of an open door.
+//! A rack that may be hot becomes cool when its own thermometer and one in the air around it say so, and no thermometer on
+//! a surface that gives off heat reads hot. From then on its own thermometer alone decides, because walls warm the still
+//! air of an open door.
 
 use super::BatchTurn;
 use crate::handling::trouble::Trouble;
@@ -123,9 +124,13 @@ impl RackWatch {
             true => {
                 let mut all = turn.device.air_thermometers();
                 all.push(self.thermometer);
-                vec![Act::Read(Read::points(
-                    all.into_iter().map(Point::Temperature),
-                ))]
+                // Apart from the others: their readings count also when the module of the surfaces is silent.
+                let each = [all, turn.device.hot_surfaces()].into_iter();
+                let each = each.filter(|it| !it.is_empty());
+                let read = |all: Vec<Thermometer>| {
+                    Act::Read(Read::points(all.into_iter().map(Point::Temperature)))
+                };
+                each.map(read).collect()
             }
             false => self.acts.clone(),
         };
@@ -164,20 +169,23 @@ impl RackWatch {
         }
     }
 
-    /// Returns true when a thermometer in the air has a fresh reading and none reads the limit or more, or when the rig
-    /// has no thermometer there.
-    fn is_air_cool(&self, turn: &BatchTurn) -> bool {
-        let all = turn.device.air_thermometers();
-        let readings = all.iter().filter_map(|it| reading(turn, *it));
-        let fresh: Vec<Celsius> = readings
-            .filter(|(_, at)| turn.now.since(*at) <= FRESH)
-            .map(|(celsius, _)| celsius)
-            .collect();
-        all.is_empty() || !fresh.is_empty() && fresh.iter().all(|it| it.0 < self.unlock_below.0)
+    /// Returns true when a thermometer in the air has a fresh reading, or the rig has none there, and neither there nor on
+    /// a surface that gives off heat a fresh reading is at the limit or above.
+    fn are_surroundings_cool(&self, turn: &BatchTurn) -> bool {
+        let fresh = |all: Vec<Thermometer>| {
+            let readings = all.into_iter().filter_map(|it| reading(turn, it));
+            let fresh = readings.filter(|(_, at)| turn.now.since(*at) <= FRESH);
+            fresh.map(|(celsius, _)| celsius).collect::<Vec<_>>()
+        };
+        let of_air = turn.device.air_thermometers();
+        let is_bare = of_air.is_empty();
+        let (air, surfaces) = (fresh(of_air), fresh(turn.device.hot_surfaces()));
+        let mut all = air.iter().chain(&surfaces);
+        (is_bare || !air.is_empty()) && all.all(|it| it.0 < self.unlock_below.0)
     }
 
-    /// Returns true when the last reading is fresh and below the limit, and the air is cool. While the rack is cool,
-    /// the limit is higher by [`HYSTERESIS_K`], and the air does not matter.
+    /// Returns true when the last reading is fresh and below the limit, and the surroundings are cool. While the rack is
+    /// cool, the limit is higher by [`HYSTERESIS_K`], and the surroundings do not matter.
     pub fn is_cool(&mut self, turn: &BatchTurn) -> bool {
         let Some((Celsius(value), at)) = reading(turn, self.thermometer) else {
             return false;
@@ -188,8 +196,8 @@ impl RackWatch {
             Heat::Unknown | Heat::Awaited(_) | Heat::Hot => 0.0,
         };
         let was_cool = self.heat == Heat::Cool;
-        let is_below =
-            value < self.unlock_below.0 + margin_k && (was_cool || self.is_air_cool(turn));
+        let is_below = value < self.unlock_below.0 + margin_k
+            && (was_cool || self.are_surroundings_cool(turn));
         if !is_below {
             self.heat = Heat::Hot;
         } else if is_fresh {

@@ -42,6 +42,8 @@ pub struct RackRig {
     pub is_thermometer_broken: bool,
     /// Reading at which the thermometer in the rack is stuck.
     pub stuck_c: Option<f64>,
+    /// Temperature of the surface of the heater; `None` for that of the rack.
+    pub surface_c: Option<f64>,
     pub emergency_stop: bool,
     /// Number of coming output writes that fail.
     pub failing_sets: u32,
@@ -63,6 +65,7 @@ impl RackRig {
             lasts: Span::ms(600_000),
             longest: Span::ms(3_600_000),
             air: vec![wiring.thermometer("reference_temperature").unwrap()],
+            surfaces: vec![wiring.thermometer("control_temperature").unwrap()],
             void: Vec::new(),
             troubles: Vec::new(),
         };
@@ -80,6 +83,7 @@ impl RackRig {
             cools: true,
             is_thermometer_broken: false,
             stuck_c: None,
+            surface_c: None,
             emergency_stop: false,
             failing_sets: 0,
             contacts: BTreeSet::new(),
@@ -187,8 +191,11 @@ impl RackRig {
 
     fn read(&mut self, point: Point) {
         let rack = self.wiring.rack().unwrap().thermometer;
-        let stuck_c = self.stuck_c.filter(|_| point == Point::Temperature(rack));
-        let shown_c = stuck_c.unwrap_or(self.rack_c);
+        let is_of = |it| point == Point::Temperature(it);
+        let stuck_c = self.stuck_c.filter(|_| is_of(rack));
+        let surfaces = self.device.hot_surfaces();
+        let surface_c = self.surface_c.filter(|_| surfaces.into_iter().any(is_of));
+        let shown_c = stuck_c.or(surface_c).unwrap_or(self.rack_c);
         let reply = match self.is_thermometer_broken {
             true => ">7FFF".to_owned(),
             false => format!(">{:04X}", (shown_c / 200.0 * 32767.0) as u16),

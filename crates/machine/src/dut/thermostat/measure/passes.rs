@@ -280,7 +280,6 @@ impl Passes {
         let observed = Observed {
             measured_c: control_c,
             ambient_c: self.ambient_c,
-            door_open: false,
         };
         let command = self.controller.step(&set, &observed);
         let second = Second {

@@ -68,7 +68,8 @@ pub fn lot(device: &Device, record: &Record, events: &[Events]) -> (LotLag, bool
         scatter_k: device.lesson.as_ref().map_or(SCATTER_K, |it| it.scatter_k),
         sensor_lag_s: SENSOR_LAG_S,
     };
-    let told = (test.learning_k_per_min != test.rate_k_per_min)
+    let told = test
+        .has_two_rates()
         .then(|| lot_lag(record, &all, &assumed))
         .flatten()
         .filter(|it| 2 * it.parts >= all.len());
@@ -351,7 +352,7 @@ fn result(device: &Device, socket: u16, record: TestRecord) -> SocketResult {
 /// Returns the characteristics that each part must have: all but the repeatability of a single pass, and a creep that no
 /// pulse has shown.
 fn expected(device: &Device) -> Vec<Characteristic> {
-    let single = device.thermostat.test.passes < 2;
+    let single = device.thermostat.test.least_passes() < 2;
     Parameter::ALL
         .into_iter()
         .filter(|it| *it != Parameter::Repeatability || !single)

@@ -136,7 +136,6 @@ impl Tuning {
         let observed = Observed {
             measured_c,
             ambient_c: seen.ambient_c,
-            door_open: false,
         };
         self.split.command(power, &observed)
     }

@@ -121,6 +121,19 @@ fn a_rack_thermometer_that_stands_still_unlocks_nothing() {
 }
 
 #[test]
+fn a_hot_heater_keeps_fan_on_and_door_locked() {
+    let mut it = Scenario::ready();
+    it.rig.surface_c = Some(70.0);
+    it.load(&[1, 2, 3]);
+    it.until("judged", |it| it.parts.judged.len() == 3);
+    it.until("cool rack", |it| it.rig.rack_c < 45.0);
+    it.run(20_000);
+    assert!(!it.rig.is_unlocked() && it.rig.is_on(it.rig.fan()));
+    it.rig.surface_c = None;
+    it.until_unlocked();
+}
+
+#[test]
 fn a_test_reports_its_trouble_and_the_rack_cools() {
     let mut it = Scenario::ready();
     it.rig

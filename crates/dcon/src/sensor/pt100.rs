@@ -39,6 +39,7 @@ fn cold(ohm: f64, mut celsius: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

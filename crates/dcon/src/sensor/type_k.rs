@@ -52,6 +52,7 @@ fn polynomial(coefficients: &[f64], x: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
