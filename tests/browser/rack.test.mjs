@@ -10,7 +10,7 @@ const LONG_S = 800;
 
 let rig, browser;
 before(async () => {
-  [rig, browser] = await Promise.all([startIn("config/rigs/thermostat", "rack", "--speed", "120"), open()]);
+  [rig, browser] = await Promise.all([startIn("config/rigs/thermostat", "rack", "--speed", "300"), open()]);
 });
 after(async () => {
   await browser?.close();

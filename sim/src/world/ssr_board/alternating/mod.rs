@@ -245,8 +245,13 @@ impl Alternating {
         };
         let holding_a = part.holding_a(on.sign);
         self.risen |= on.sign * self.at(span.0).amps >= holding_a;
-        let zero_us = triac::extinction_us(&self.segment, on, holding_a, span)?;
-        self.zero_us = zero_us;
-        Some(zero_us)
+        let extinct_us = triac::extinction_us(&self.segment, on, holding_a, span);
+        // A current that fires right before its zero never exceeds the holding current; without an inductance it ends
+        // when it reverses.
+        let reversed = || triac::reversal_us(&self.segment, on, span);
+        let reversed_us = (self.load.henries == 0.0).then(reversed).flatten();
+        let ends_us = [extinct_us, reversed_us].into_iter().flatten();
+        self.zero_us = ends_us.fold(f64::INFINITY, f64::min);
+        self.zero_us.is_finite().then_some(self.zero_us)
     }
 }

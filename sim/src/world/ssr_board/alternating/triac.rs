@@ -56,6 +56,11 @@ pub fn extinction_us(
     first((risen_us, span.1), ZERO_US, |t_us| !holds(t_us))
 }
 
+/// Returns the first instant within `span` at which the current of a conducting output has the other sign.
+pub fn reversal_us(segment: &Segment, on: OnState, span: (f64, f64)) -> Option<f64> {
+    first(span, ZERO_US, |t_us| on.sign * segment.at(t_us).amps < 0.0)
+}
+
 /// Checks whether the voltage that returns at a current zero rises too fast for the output to block. An inductive load
 /// makes it swing up with the capacitance over the output; over a resistive load it returns as slowly as the line. A
 /// voltage up to [`COMMUTATION_V`] never rises too fast.
