@@ -5,7 +5,7 @@
 //! - *held*: the armature presses on backstop or seat. The motion integrates only the flux; travel and leaf follow it
 //!   in equilibrium. A constant flux costs nothing.
 //! - *condensed*: the armature moves and its leaf presses on a contact, for example on a slow ramp below the threshold
-//!   ([`super::lumped::condensed`]).
+//!   (`lumped/condensed.rs`).
 //! - *moving*: the motion integrates all five states of [`super::lumped`], until the bounce has died out.
 //!
 //! A model without the leaf would be cheaper and 4 % off in time. Against all five states throughout, the levels move the
