@@ -34,6 +34,15 @@ fn pair(text: &str) -> Result<(String, String), PairError> {
     Ok((parts.0.trim().to_owned(), parts.1.trim().to_owned()))
 }
 
+/// Returns the content of a file, or of the standard input for `-`.
+pub(super) fn bytes_of(file: &Path) -> anyhow::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    input(file)
+        .and_then(|mut file| file.read_to_end(&mut bytes))
+        .with_context(|| format!("reading {}", file.display()))?;
+    Ok(bytes)
+}
+
 pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<Exit> {
     anyhow::ensure!(
         is_lot_name(&args.lot),
@@ -41,10 +50,7 @@ pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<Exit> {
         args.lot
     );
     let name = args.file.display();
-    let mut bytes = Vec::new();
-    input(&args.file)
-        .and_then(|mut file| file.read_to_end(&mut bytes))
-        .with_context(|| format!("reading {name}"))?;
+    let bytes = bytes_of(&args.file)?;
     let source = Source {
         file: &args.file,
         bytes: &bytes,

@@ -1,16 +1,16 @@
 //! `history results` and `history import-results`: results that a plant measured outside of the rig, see
 //! [`mod@app::import::results`].
 
-use crate::cli::output::{Column, Format, FormatArgs, Output, figure, input, text};
+use super::import::bytes_of;
+use crate::cli::output::{Column, Format, FormatArgs, Output, figure, text};
 use crate::cli::person;
-use anyhow::Context;
 use app::exit::Exit;
 use app::import::Source;
 use app::import::results::{Purpose, import_results};
 use clap::Args;
 use history::report::{Lang, external_sentence};
 use history::{Archive, Entered, ExternalResult, Filter, inquiry::checks};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -84,10 +84,7 @@ pub(super) fn standing(archive: &Archive, lot: &str, out: &mut Output) -> anyhow
 
 pub(super) fn import(db: &Path, args: &ImportResultsArgs) -> anyhow::Result<Exit> {
     let name = args.file.display();
-    let mut bytes = Vec::new();
-    input(&args.file)
-        .and_then(|mut file| file.read_to_end(&mut bytes))
-        .with_context(|| format!("reading {name}"))?;
+    let bytes = bytes_of(&args.file)?;
     let source = Source {
         file: &args.file,
         bytes: &bytes,
