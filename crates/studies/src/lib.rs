@@ -154,7 +154,7 @@ impl Study {
             Self::Gauge => (1, 10),
             Self::History => (1, 1_000_000),
             Self::Kill => (300, 1),
-            Self::Life => (50, 2_000),
+            Self::Life => (200, 500),
             Self::Pace => (3, 300),
             Self::Promises => (2, 60),
             Self::Sorting => (100, 110),

@@ -1,7 +1,7 @@
 //! Memory, open files and rows of `serve` over many lots. The study orders the lots one after another, as a person does
 //! on the page.
 //!
-//! The program runs in a process of its own. The first lot fills caches and buffers; after it, memory and open files
+//! The program runs in a process of its own. The first parts fill caches and buffers; after them, memory and open files
 //! must not grow. Every ordered part must have one row.
 
 use super::chart::Chart;
@@ -19,7 +19,9 @@ use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Greatest growth of the resident memory after the first lot, percent.
+/// Parts that fill caches and buffers: growth counts from the end of the lot that completes them.
+const WARM_PARTS: u64 = 2_000;
+/// Greatest growth of the resident memory after these parts, percent.
 const GROWTH_PCT: f64 = 1.0;
 /// Pause between two polls of the view.
 const LOOK: Duration = Duration::from_millis(100);
@@ -39,11 +41,24 @@ struct Footprint {
     files: u64,
 }
 
+/// Returns the number of lots that complete the first [`WARM_PARTS`] parts.
+fn warm_lots(order: &Order) -> usize {
+    WARM_PARTS.div_ceil(order.parts.max(1)) as usize
+}
+
 /// Runs the lots of the order in one program and makes the report.
 ///
 /// # Errors
-/// Fails when the program does not start, refuses an order, raises an alarm that ends a lot, or shows no progress.
+/// Fails when no lot follows the first [`WARM_PARTS`] parts, or when the program does not start, refuses an order, raises an alarm that ends a lot, or shows no progress.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let warm = warm_lots(order);
+    ensure!(
+        order.lots > warm as u64,
+        "--seeds {} has no lot after the first {WARM_PARTS} parts: expected at least {} lots of {} parts",
+        order.lots,
+        warm + 1,
+        order.parts
+    );
     let folder = TempDir::new()?;
     let db = folder.path().join("history.db");
     let mut served = Served::start(order, &db)?;
@@ -61,9 +76,10 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 
 fn report(order: &Order, footprints: &[Footprint], rows: u64) -> Report {
     let ordered = order.lots * order.parts;
+    let after = footprints.get(warm_lots(order) - 1..).unwrap_or_default();
     let grown = |of: fn(&Footprint) -> u64| {
-        let first = footprints.first().map(of)?;
-        let most = footprints.iter().map(of).max()?;
+        let first = after.first().map(of)?;
+        let most = after.iter().map(of).max()?;
         Some((first, most - first))
     };
     let memory = grown(|it| it.resident_kb);
@@ -74,16 +90,16 @@ fn report(order: &Order, footprints: &[Footprint], rows: u64) -> Report {
         .collect();
     let bars = vec![
         Figure::new(
-            "growth of the memory after the first lot",
+            "growth of the memory after the first 2,000 parts",
             ordered,
             memory.and_then(|(first, grown)| percent(grown, first)),
             "%",
         )
-        .with("first_mb", mb.first().copied())
+        .with("first_mb", mb.get(warm_lots(order) - 1).copied())
         .with("last_mb", mb.last().copied())
         .bar(Bar::AtMost(GROWTH_PCT)),
         Figure::none(
-            "open files more than after the first lot",
+            "open files more than after the first 2,000 parts",
             ordered,
             files.map_or(u64::MAX, |(_, grown)| grown),
         ),
