@@ -184,8 +184,8 @@ fn a_blown_fuse_of_the_line_spares_the_loop() {
 #[test]
 fn a_blown_fuse_of_the_loop_spares_the_line() {
     let mut hand = rig("ac_zero_cross", EUROPE, 3, QUIET);
-    hand.rig.inject("loop_dead").expect("a fault");
     hand.line(EUROPE);
+    hand.rig.inject("loop_dead").expect("a fault");
     assert!(socket_v(&mut hand) > 200.0);
     hand.set("line_contactor", false);
     hand.wait(40.0);
