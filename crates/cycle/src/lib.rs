@@ -165,6 +165,8 @@ pub struct Cycle {
     reader: Option<Alarm>,
     verified: bool,
     publish_at: RigTime,
+    /// Instant of the last view sent.
+    published: Option<Instant>,
     /// State of the whole rig (PackML) in the last event sent.
     published_state: packml::State,
     /// Reason why the scan failed to read a reset status on a measuring line. The lost read may have cleared the sign
@@ -221,6 +223,7 @@ impl Cycle {
             reader: None,
             verified: false,
             publish_at: RigTime(0),
+            published: None,
             published_state: packml::State::Stopped,
             worst_age: Span(0),
             refused: None,

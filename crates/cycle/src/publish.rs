@@ -13,11 +13,14 @@ use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
 use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, RackView, Reaction, Token};
 use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 use texts::Lang;
 use units::{RigTime, Span};
 
-/// Shortest time between two views.
+/// Shortest rig time between two views.
 pub const PACE: Span = Span::ms(50);
+/// Shortest wall time between two views: a person sees no more, however fast a simulated rig runs.
+const SEEN: Duration = Duration::from_millis(10);
 
 /// Translates an order of a screen for the station; refuses an incomplete order, and one that only changes the history.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
@@ -64,15 +67,17 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 }
 
 impl Cycle {
-    /// Sends a snapshot to the screens, at most one per [`PACE`]; the `last` snapshot goes out at any time.
+    /// Sends a snapshot to the screens, at most one per [`PACE`] and per [`SEEN`]; the `last` one goes out at any time.
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
         let Some(snapshots) = self.links.snapshots.clone() else {
             return;
         };
-        if now < self.publish_at && !last {
+        let is_seen = self.published.is_none_or(|it| it.elapsed() >= SEEN);
+        if !last && (now < self.publish_at || !is_seen) {
             return;
         }
         self.publish_at = now + PACE;
+        self.published = Some(Instant::now());
         let mut machine = self.machine(now);
         machine.jogs = self.jog_preview(now);
         let station = &self.station;

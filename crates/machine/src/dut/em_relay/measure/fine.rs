@@ -44,10 +44,15 @@ pub(super) fn conclude(
     };
     // Models and overshoots learn from the first fine ramp only: repeats find a warmer coil, and most parts have no
     // repeat.
-    if known.is_none_or(|ramp| ramp.fine.is_none()) {
+    let first = known.and_then(|ramp| ramp.fine);
+    if first.is_none() {
         record.forget(parameter);
         record.keep_ramp(direction, ramp);
     }
+    let scale = context.scale();
+    state
+        .plan
+        .expect_again(direction, first.unwrap_or(seen), scale);
     let reading = fine_reading(context, (ramp, gate), part, direction);
     record.found(parameter, reading, readings.gates.iter().flatten());
     None
@@ -65,10 +70,7 @@ fn evaluate(
         plan,
         record,
     } = state;
-    let (sent, searched) = (
-        board.sent(),
-        plan.interval(record, direction, context.scale()),
-    );
+    let (sent, searched) = (board.sent(), plan.interval(direction));
     let (Some(gate), Some(_)) = (gate0(context, readings), record.own.track) else {
         record.stop(Finding::GatesNotRead);
         return None;

@@ -1,6 +1,5 @@
 //! Data that earlier stages pass to later ones and that the test record does not keep.
 
-use super::TestRecord;
 use super::ramp::Expected;
 use super::search::Search;
 use crate::dut::em_relay::Finding;
@@ -45,14 +44,15 @@ impl Plan {
         }
     }
 
-    /// Returns the interval of the next fine ramp: around the first indication for a repeat, else the expected one.
-    /// Panics when no stage has set an expectation.
-    pub fn interval(&self, record: &TestRecord, direction: Direction, scale: Scale) -> Expected {
-        let repeated = record
-            .ramp(direction)
-            .and_then(|ramp| ramp.fine)
-            .map(|fine| Expected::new(fine, scale.of_coil(REPEAT_SD).0));
-        let Some(interval) = repeated.or(self.expected(direction)) else {
+    /// Expects the event of a repeated fine ramp around the indication of the first one.
+    pub fn expect_again(&mut self, direction: Direction, first: Volt, scale: Scale) {
+        let repeated = Expected::new(first, scale.of_coil(REPEAT_SD).0);
+        self.expect(direction, repeated);
+    }
+
+    /// Returns the interval of the next fine ramp. Panics when no stage has set an expectation.
+    pub fn interval(&self, direction: Direction) -> Expected {
+        let Some(interval) = self.expected(direction) else {
             panic!("a fine ramp without an expectation, {direction:?}");
         };
         interval

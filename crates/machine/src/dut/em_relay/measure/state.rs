@@ -45,7 +45,7 @@ impl TestState {
 
     fn acts(&self, stage: Stage, context: &Context) -> (Vec<Act>, BoardState) {
         let (board, record) = (self.board, &self.record);
-        let interval = |direction| self.plan.interval(record, direction, context.scale());
+        let interval = |direction| self.plan.interval(direction);
         match stage {
             Stage::Kelvin => (kelvin::acts(context), board),
             Stage::Conditioning => conditioning::acts(context, board),

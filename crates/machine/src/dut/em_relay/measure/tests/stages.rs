@@ -135,6 +135,21 @@ fn a_missed_fine_ramp_repeats_at_most_five_times() {
 }
 
 #[test]
+fn a_repeated_ramp_that_misses_searches_elsewhere() {
+    let mut state = ramp_from(7.8, 0.2);
+    let conclude = |state: &mut TestState, readings: &Readings| {
+        fine::conclude(&context(), readings, state, (Direction::Rising, 0));
+        state.plan.interval(Direction::Rising)
+    };
+    let around_first = conclude(&mut state, &watched(true, PULLED, 60.0));
+    let missed = conclude(&mut state, &watched(false, PULLED, 60.0));
+    assert!(missed.half_width > around_first.half_width);
+    assert!(missed.centre < around_first.centre);
+    let found = conclude(&mut state, &watched(true, PULLED, 60.0));
+    assert_eq!(found, around_first);
+}
+
+#[test]
 fn an_event_before_the_interval_lowers_the_search() {
     let mut state = ramp_from(7.8, 0.2);
     let readings = watched(true, PULLED, 2.0);
