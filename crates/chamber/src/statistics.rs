@@ -13,8 +13,10 @@ pub fn median(all: &[f64]) -> Option<f64> {
 }
 
 /// Returns the mean of values; NaN without values.
-pub fn mean(all: &[f64]) -> f64 {
-    all.iter().sum::<f64>() / all.len() as f64
+pub fn mean<'a>(all: impl IntoIterator<Item = &'a f64, IntoIter: ExactSizeIterator>) -> f64 {
+    let all = all.into_iter();
+    let count = all.len() as f64;
+    all.sum::<f64>() / count
 }
 
 /// Returns the median of values, and their standard deviation by the median of the deviations from it, which a few wild

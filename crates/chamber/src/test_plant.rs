@@ -59,6 +59,11 @@ impl Plant {
         self.seen()
     }
 
+    /// Returns the temperature of the heater, C.
+    pub fn surface_c(&self) -> f64 {
+        self.bodies_c[0]
+    }
+
     /// Returns the present readings.
     pub fn seen(&self) -> Observed {
         Observed {

@@ -1,6 +1,6 @@
 //! Conditions that last, and the range of recent readings.
 
-use crate::statistics::slope;
+use crate::statistics::{mean, slope};
 use std::collections::VecDeque;
 
 /// A condition that counts once it has lasted for some seconds.
@@ -67,6 +67,11 @@ impl Recent {
     /// Returns the least-squares slope per second; `None` before the window is full.
     pub fn slope(&self) -> Option<f64> {
         self.is_full().then(|| slope(&self.values))
+    }
+
+    /// Returns the mean; `None` before the window is full.
+    pub fn mean(&self) -> Option<f64> {
+        self.is_full().then(|| mean(&self.values))
     }
 
     fn is_full(&self) -> bool {

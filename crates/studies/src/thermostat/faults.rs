@@ -1,7 +1,8 @@
 //! Every fault of the chamber at random instants: how long the heater stays on, and what becomes of the parts.
 //!
-//! A fault counts only when the command of the heater was on at the instant of the fault or came on later. Parts that
-//! were judged before the fault do not count.
+//! A fault counts only when the command of the heater was on at the instant of the fault or came on later. The time
+//! counts from the fault; for an open heater, which nothing shows and which does nothing without power, from the first
+//! command after it. Parts that were judged before the fault do not count.
 
 use super::heat;
 use super::program::{Lot, Ran, run};
@@ -27,6 +28,8 @@ const HIDDEN_S: f64 = 60.0;
 enum Must {
     /// The heater is off within this time, s, and no part is judged.
     Stop(f64),
+    /// The same within this time, s, of the first command of the heater.
+    StopOncePowered(f64),
     /// Either the heater ends off, or the results stay right because the controller makes up for the fault.
     StopOrStayRight,
 }
@@ -43,7 +46,7 @@ const FAULTS: [(&str, Must); 22] = [
     ("estop", Must::Stop(SHOWN_S)),
     ("mains_off", Must::Stop(SHOWN_S)),
     ("fan_stopped", Must::Stop(HIDDEN_S)),
-    ("heater_open", Must::Stop(HIDDEN_S)),
+    ("heater_open", Must::StopOncePowered(HIDDEN_S)),
     ("ssr_stuck", Must::Stop(HIDDEN_S)),
     ("control_stuck", Must::StopOrStayRight),
     ("reference_stuck", Must::StopOrStayRight),
@@ -67,13 +70,17 @@ struct Struck {
 }
 
 impl Struck {
-    /// Returns the time from the fault to the last instant at which the command of the heater was on, s; `None` when it
-    /// was never on after the fault.
-    fn heats_s(&self) -> Option<f64> {
+    /// Returns the time until the last instant at which the command of the heater was on after the fault, s; `None` when
+    /// it was never on.
+    fn heats_s(&self, must: Must) -> Option<f64> {
         let at_us = self.at_s * 1_000_000;
-        let ends = heat::heated(&self.ran.journal).into_iter().map(|it| it.end);
-        let last_us = ends.filter(|it| *it > at_us).max()?;
-        Some((last_us - at_us) as f64 / 1e6)
+        let heated = heat::heated(&self.ran.journal).into_iter();
+        let after: Vec<_> = heated.filter(|it| it.end > at_us).collect();
+        let from_us = match must {
+            Must::Stop(_) | Must::StopOrStayRight => at_us,
+            Must::StopOncePowered(_) => after.first()?.start.max(at_us),
+        };
+        Some((after.last()?.end - from_us) as f64 / 1e6)
     }
 
     /// Returns true when an alarm has ended the lot.
@@ -151,18 +158,18 @@ fn of_fault(name: &str, must: Must, all: &[&Struck]) -> [Figure; 2] {
     let failed = Figure::none(format!("{name}, good parts failed"), parts, failed)
         .with("judged", Some(judged as f64));
     match must {
-        Must::Stop(within_s) => [
-            heated(name, all).bar(Bar::AtMost(within_s)),
+        Must::Stop(within_s) | Must::StopOncePowered(within_s) => [
+            heated(name, must, all).bar(Bar::AtMost(within_s)),
             Figure::none(format!("{name}, parts judged"), parts, judged),
         ],
-        Must::StopOrStayRight => [heated(name, all), failed],
+        Must::StopOrStayRight => [heated(name, must, all), failed],
     }
 }
 
 /// Returns the longest time for which the heater stays on after a fault. Further columns have the number of lots
 /// that an alarm ended, and seed and instant of the lot with the longest time.
-fn heated(name: &str, all: &[&Struck]) -> Figure {
-    let heats = all.iter().filter_map(|it| Some((it.heats_s()?, *it)));
+fn heated(name: &str, must: Must, all: &[&Struck]) -> Figure {
+    let heats = all.iter().filter_map(|it| Some((it.heats_s(must)?, *it)));
     let heats: Vec<(f64, &Struck)> = heats.collect();
     let longest = heats.iter().max_by(|a, b| a.0.total_cmp(&b.0));
     let heated_s = longest.map_or(0.0, |it| it.0);

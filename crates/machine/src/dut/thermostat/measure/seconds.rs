@@ -19,6 +19,7 @@ use crate::rig::sample::{Quality, Sample};
 use chamber::control::split_range::Command;
 use chamber::lag::Record;
 use chamber::program::{TRAVEL_K_PER_MIN, Waiting};
+use chamber::watch::heater::Heater;
 use chamber::watch::sensors::Sensors;
 use chamber::watch::slope::SlidingSlope;
 use chamber::watch::unpowered::Unpowered;
@@ -29,7 +30,7 @@ const SECOND: Span = Span::ms(1_000);
 const CHAIN_S: usize = 15;
 /// Time after which every input of the chain must have been read, s.
 const READ_S: usize = 3;
-/// Greatest age of an input of the safety chain that counts.
+/// Greatest age of an input of the safety chain, or of a reading of the surface of the heater, that counts.
 const FRESH: Span = Span::ms(2_000);
 /// Range of room temperatures in which a chamber may stand, C.
 const ROOM_C: [f64; 2] = [5.0, 38.0];
@@ -39,6 +40,7 @@ enum Doing {
     Wait,
     Read(Runner),
     Set(Runner),
+    Surface(Runner),
     /// Pulses through the contacts of these places.
     Pulse(Runner, Vec<usize>),
 }
@@ -48,6 +50,7 @@ enum Doing {
 enum Did {
     Read,
     Set,
+    Surface,
     Pulse,
 }
 
@@ -77,6 +80,7 @@ pub struct Seconds {
     experiment: Option<Experiment>,
     sensors: Sensors,
     unpowered: Unpowered,
+    heater: Heater,
     /// Command of the last second.
     command: Command,
     /// Resistances in the last rise, by the place of the contact in the batch.
@@ -108,6 +112,7 @@ impl Seconds {
             experiment,
             sensors: Sensors::default(),
             unpowered: Unpowered::default(),
+            heater: Heater::default(),
             command: Command::OFF,
             pulses: Vec::new(),
             next: 0,
@@ -142,6 +147,7 @@ impl Seconds {
                 }
                 Doing::Read(runner) => (Did::Read, runner.step(now, done.take(), image)),
                 Doing::Set(runner) => (Did::Set, runner.step(now, done.take(), image)),
+                Doing::Surface(runner) => (Did::Surface, runner.step(now, done.take(), image)),
                 Doing::Pulse(runner, _) => (Did::Pulse, runner.step(now, done.take(), image)),
             };
             match (state, did) {
@@ -153,7 +159,15 @@ impl Seconds {
                     Ok(None) => return Advance::Over,
                     Err(found) => return Advance::Ended(Ended::Found(found)),
                 },
-                (RunnerState::Done, Did::Set) => self.doing = self.pulse(device, contacts, now),
+                (RunnerState::Done, Did::Set) => {
+                    let read = device.points.surface.map(Point::Temperature);
+                    let acts = read.map(|it| Act::Read(Read::points([it])));
+                    self.doing = Doing::Surface(Runner::new(acts.into_iter().collect(), now));
+                }
+                // A rig without this reading lacks one check of the heater; its batch goes on.
+                (RunnerState::Done | RunnerState::Trouble(_), Did::Surface) => {
+                    self.doing = self.pulse(device, contacts, now);
+                }
                 (RunnerState::Done, Did::Pulse) => {
                     self.keep_pulses(device, now);
                     self.doing = Doing::Wait;
@@ -242,6 +256,9 @@ impl Seconds {
         let shown = |it| part(device, it, origin);
         let parts = || contacts.iter().filter_map(shown).collect();
         self.check_sensors(&seen)?;
+        let surface = points.surface.and_then(|it| usable(image, it));
+        let surface = surface.filter(|it| now.since(it.origin.at) <= FRESH);
+        self.check_heater(surface.as_ref(), control_c, passed)?;
         let Some(work) = &mut self.work else {
             return Ok(Some(Command::OFF));
         };
@@ -311,6 +328,23 @@ impl Seconds {
             .is_some_and(|it| self.unpowered.step(it, self.command));
         match heats {
             true => Err(Finding::Heat(HeatTrouble::HeatWithoutCommand)),
+            false => Ok(()),
+        }
+    }
+
+    /// Checks for the seconds that have passed that a heater with power is warmer than the air.
+    fn check_heater(
+        &mut self,
+        surface: Option<&Sample>,
+        control_c: Option<f64>,
+        passed: usize,
+    ) -> Result<(), Finding> {
+        let surface_c = surface.map(|it| it.value);
+        let power = self.command.heater;
+        let mut step = |air_c| self.heater.step(air_c, surface_c, power);
+        let is_open = control_c.is_some_and(|it| (0..passed).any(|_| step(it)));
+        match is_open {
+            true => Err(Finding::Heat(HeatTrouble::EnergyBalance)),
             false => Ok(()),
         }
     }
