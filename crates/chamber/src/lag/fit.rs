@@ -77,8 +77,10 @@ pub struct Solution {
     pub variance: f64,
     /// Operate and reset temperature; `None` without event.
     pub means: [Option<Mean>; 2],
-    /// Weighted sum of squares of the residuals, expected lag included (chi squared).
+    /// Weighted sum of squares of the residuals of the events (chi squared).
     pub misfit: f64,
+    /// Its degrees of freedom: events less estimated temperatures, less the share of the lag that comes from the events.
+    pub freedom: f64,
 }
 
 /// Fits the lag of a part, from `expected` on; returns its events at that lag. Returns `None` for a part without event,
@@ -155,13 +157,15 @@ impl Fit {
             ln,
             variance: weight.recip(),
             means: means.map(|it| it.map(|mean| mean.departed(departure))),
-            misfit: events.max(0.0) + prior * (departure - asked).powi(2),
+            misfit: events.max(0.0),
+            freedom: self.repeated() - if own > 0.0 { own / weight } else { 0.0 },
         }
     }
 
-    /// Returns the degrees of freedom: events less estimated temperatures.
-    pub fn freedom(&self) -> usize {
-        self.all.iter().map(|it| it.len().saturating_sub(1)).sum()
+    /// Returns the number of events less that of the estimated temperatures.
+    fn repeated(&self) -> f64 {
+        let each = self.all.iter().map(|it| it.len().saturating_sub(1));
+        each.sum::<usize>() as f64
     }
 
     /// Returns the wider of the ranges of operate and reset temperature, K; `None` when the part switched only once each

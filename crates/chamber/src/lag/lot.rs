@@ -8,8 +8,8 @@ use crate::statistics::{mean, median, robust};
 /// Least spread of lags within a lot, one standard deviation of their logarithm; a lot whose spread is not known has this
 /// one.
 pub const LAG_SPREAD: f64 = 0.15;
-/// Greatest spread, in multiples of the least one: half of the parts with half the lag, half with double.
-const MOST: f64 = 5.0;
+/// Greatest spread: half of the parts with half the lag, half with double.
+pub(super) const MOST_SPREAD: f64 = 5.0 * LAG_SPREAD;
 /// Points of the search for a lag to begin with, evenly spaced in the logarithm.
 const POINTS: i32 = 24;
 /// Standard uncertainty of the logarithm of the lag of a part from which its passes tell none.
@@ -63,7 +63,7 @@ pub fn lot_lag(record: &Record, parts: &[Switching], assumed: &Noise) -> Option<
     let mut noise = *assumed;
     let mut found = Spread::of(&solved(&kept, &begin, &noise)?, LAG_SPREAD);
     for _ in 0..ROUNDS {
-        noise = scattered(&kept, &found.expected(), &noise, assumed);
+        noise = scattered(&kept, found.ln, &noise, assumed);
         found = Spread::of(&solved(&kept, &begin, &noise)?, found.sd);
     }
     Some(LotLag {
@@ -119,17 +119,7 @@ impl Spread {
         Self {
             ln,
             u: weights.recip().sqrt(),
-            sd: variance
-                .max(0.0)
-                .sqrt()
-                .clamp(LAG_SPREAD, MOST * LAG_SPREAD),
-        }
-    }
-
-    fn expected(&self) -> Expected {
-        Expected {
-            ln: self.ln,
-            sd: self.sd,
+            sd: variance.max(0.0).sqrt().clamp(LAG_SPREAD, MOST_SPREAD),
         }
     }
 }

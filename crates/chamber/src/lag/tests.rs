@@ -278,6 +278,21 @@ fn passes_that_disagree_raise_the_scatter_of_the_lot() {
 }
 
 #[test]
+fn the_spread_of_lags_explains_no_scatter() {
+    let (record, mut parts) = (record(), lot());
+    for part in &mut parts {
+        part.operate[0].first_s += 8.0;
+        part.reset[1].first_s += 8.0;
+    }
+    let lag = lot_lag(&record, &parts, &NOISE).unwrap();
+    let [narrow, wide] = [0.05, 0.7].map(|spread| {
+        let lag = LotLag { spread, ..lag };
+        lot_scatter(&record, &parts, &lag, &NOISE)
+    });
+    assert!((wide / narrow - 1.0).abs() < 1e-9, "{narrow} {wide}");
+}
+
+#[test]
 fn the_lag_of_the_sensor_widens_the_spread_of_lags() {
     let (record, parts) = (record(), lot());
     let lag = lot_lag(&record, &parts, &NOISE).unwrap();

@@ -7,7 +7,7 @@
 //! | sensors differ | control and reference are apart by more than 1.0 K + 0.1 min × rate for 10 s; rate of the set point, or of one towards the other |
 //! | sensor stuck | a reading changes by less than 0.02 K in 60 s above 30 % power |
 //! | energy balance | the slope differs from the expected one by more than half for 60 s: open heater, low mains, door |
-//! | energy balance | the surface of the heater is not warmer than the air by a quarter of what its power makes for 10 s: open heater |
+//! | energy balance | the surface of the heater exceeds the air by less than a quarter of what its power makes, for 10 s: open heater |
 //! | heat without command | the chamber warms by more than 0.5 K/min without power for 60 s: power unit shorted |
 //! | over set point | the reading exceeds the set point by 5 K |
 //! | ramp not reached, cooling too slow | the set point waits, and the chamber moves by less than 1 K in 5 minutes |

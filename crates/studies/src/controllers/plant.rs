@@ -161,13 +161,22 @@ impl Plant {
     ///
     /// # Errors
     /// Fails when the chamber does not respond as an identification needs it.
-    pub fn identify(mut self, medium: Medium) -> anyhow::Result<Identified> {
+    pub fn identify(self, medium: Medium) -> anyhow::Result<Identified> {
+        Ok(self.identify_in_room(medium)?.0)
+    }
+
+    /// Does what [`Self::identify`] does; returns also the temperature of the room, C, that belongs to the figures: a run
+    /// that takes the chamber for a warm one finds its own.
+    ///
+    /// # Errors
+    /// Fails as [`Self::identify`] does.
+    pub fn identify_in_room(mut self, medium: Medium) -> anyhow::Result<(Identified, f64)> {
         let ambient_c = self.seen().ambient_c;
         let mut run = Identification::new(medium.step(), ambient_c, IDENTIFY_LIMIT_C);
         loop {
             match run.step(self.control_c)? {
                 Step::Go(command) => self.step(command),
-                Step::Done(found) => return Ok(found),
+                Step::Done(found) => return Ok((found, run.ambient_c())),
             }
         }
     }

@@ -40,6 +40,8 @@ pub struct Rig {
     world: World,
     seed: u64,
     values: ChamberValues,
+    /// Temperature of the room as the machine knows it, C.
+    room_c: f64,
     sensors: [SensorValues; 2],
     /// The device that the recipe makes on a rig that has identified its chamber and tested no part of the lot.
     device: Device,
@@ -68,10 +70,11 @@ impl Rig {
         cold.mains = world.mains;
         let device = device(kind)?;
         let windows = device.thermostat.windows(&device.recipe.limits);
+        let (chamber, room_c) = cold.identify_in_room(Medium::Air)?;
         let lesson = Lesson {
             batch: 0,
-            ambient_c: values.ambient_c,
-            chamber: cold.identify(Medium::Air)?,
+            ambient_c: room_c,
+            chamber,
             lag: None,
             windows: windows.context("a recipe with windows")?,
             scatter_k: SCATTER_K,
@@ -81,6 +84,7 @@ impl Rig {
             world,
             seed,
             values,
+            room_c,
             sensors,
             device: Device {
                 lesson: Some(Arc::new(lesson)),
@@ -131,11 +135,11 @@ impl Rig {
         };
         let lot = (self.kind, &self.world, self.seed);
         Running {
-            ambient_c,
+            room_c: self.room_c,
             plant: self.warm(self.seed ^ (batch.number << 32)),
             rack: Rack::new(lot, batch, [parts_c, START_C], ambient_c),
-            record: Record::new(0.0, ambient_c),
-            work: Work::new(device, false, ambient_c, START_C),
+            record: Record::new(0.0, self.room_c),
+            work: Work::new(device, false, self.room_c, START_C),
             is_over: false,
         }
     }
@@ -182,7 +186,7 @@ const COOLING: Command = Command {
 
 /// A batch under way.
 struct Running {
-    ambient_c: f64,
+    room_c: f64,
     plant: Plant,
     rack: Rack,
     record: Record,
@@ -212,7 +216,7 @@ impl Running {
         let seen = Seen {
             control_c: Some(self.plant.seen().measured_c),
             reference_c: Some(self.plant.reference_c()),
-            ambient_c: self.ambient_c,
+            ambient_c: self.room_c,
             waiting: self.rack.waiting(),
         };
         let shown: &dyn Fn() -> Vec<Shown> = &|| self.rack.shown();
@@ -232,7 +236,7 @@ impl Running {
             events: shown.into_iter().map(|it| it.events).collect(),
             drops: &[],
             pulses: &[],
-            ambient_c: self.ambient_c,
+            ambient_c: self.room_c,
             last: None,
         };
         judged(device, &order, &recorded, Some(&self.work))
