@@ -1539,6 +1539,7 @@ choice-coarse_fine = coarse, then fine ramp
 choice-two_rates = two rates, extrapolated
 choice-bisection = halved steps
 choice-staircase = staircase
+choice-alternating = + −, one per closure
 choice-plus_minus = + −
 choice-plus_minus_minus_plus = + − − +
 field-part-tcr_ppm_per_k = Temperature coefficient

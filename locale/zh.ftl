@@ -1510,6 +1510,7 @@ choice-coarse_fine = 粗斜坡后细斜坡
 choice-two_rates = 双速率外推
 choice-bisection = 逐步二分
 choice-staircase = 阶梯
+choice-alternating = + −，每次闭合一个方向
 choice-plus_minus = + −
 choice-plus_minus_minus_plus = + − − +
 field-part-tcr_ppm_per_k = 温度系数

@@ -1,12 +1,14 @@
-//! Contact resistance, four-wire, with the source reversed: `R = K (V+ - V-) / 2`, or with four readings
-//! `K (V1 - V2 - V3 + V4) / 4`.
+//! Contact resistance, four-wire: drops with the 1 A source in both directions, whose difference is free of the thermal
+//! EMF, of the converter's offset and of the monitor's current.
 //!
-//! The reversal cancels the thermal EMF and the converter's offset. The calibration finds `K` on the 50 mOhm reference
-//! with the same source, amplifier and converter, so `K` contains the current and all gains.
+//! A closure has one reading ([`Drop::single`]) or, with the source reversed on it, several ([`Closure`]). Two closures
+//! with one reading each in opposite directions have the mean resistance `R = K (V+ - V-) / 2`; any other number also
+//! needs the drop without current, the [`Zero`]. The calibration finds `K` on the 50 mOhm reference with the same
+//! source, amplifier and converter, so `K` contains the current and all gains.
 
 use super::sampling::Polarities;
 use crate::gauge::Factor;
-use crate::gauge::budget::{Budget, Reading};
+use crate::gauge::budget::{Budget, Reading, rectangular};
 use units::{Unit, Volt};
 
 /// Closure read with both polarities of the source.
@@ -44,32 +46,94 @@ impl Closure {
     }
 }
 
-/// Returns the standard uncertainty of the mean drop of `later + 1` closures, volts.
-///
-/// The first closure has `readings` readings of both polarities. The later ones have forward readings only: the zero of
-/// the first closure is subtracted from them, so averaging does not reduce the noise of that zero, and the EMF may have
-/// changed by `emf_v` since.
-pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64) -> f64 {
-    let (m, k) = (readings as f64, later as f64);
-    let n = k + 1.0;
-    let forward = m / 2.0 * ((1.0 - k) / (m * n)).powi(2);
-    let reversed = m / 2.0 / m.powi(2);
-    let own = k / n.powi(2);
-    (reading_v.powi(2) * (forward + reversed + own) + emf_v.powi(2) * own).sqrt()
+/// Change of the thermal EMF between two closures (30 uV), volts at the terminal, behind the amplifier with gain 50.
+const EMF_MOVES_V: f64 = 30e-6 * 50.0;
+/// Largest drop of a closed contact without current, volts at the terminal: offsets, and the 11 mA of the contact monitor
+/// across 100 mOhm.
+const LARGEST_ZERO_V: f64 = 0.06;
+
+/// Returns the standard uncertainty of one reading of a closure whose EMF lies as far from the mean as
+/// [`EMF_MOVES_V`] between two closures permits.
+fn on_one_closure(reading_v: f64) -> f64 {
+    reading_v.hypot(EMF_MOVES_V / 2f64.sqrt())
 }
 
-/// Returns the resistance in milliohms from the drops of closures, each free of offset and EMF; `None` without a drop.
-///
-/// `mean_u_v` is the standard uncertainty of their mean at the terminal. The budget omits the scatter from closure to
-/// closure: the result is the mean of these closures.
-pub fn resistance(drops: &[Volt], mohm_per_v: Factor, mean_u_v: f64) -> Option<Reading> {
+/// Drop of a closed contact without current, volts at the terminal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zero {
+    volts: Volt,
+    u_v: f64,
+}
+
+impl Zero {
+    /// The zero before any reading.
+    pub fn unknown() -> Self {
+        Self {
+            volts: Volt(0.0),
+            u_v: rectangular(LARGEST_ZERO_V),
+        }
+    }
+
+    /// Returns the zero read on one closure; `u_v` is the uncertainty of the reading.
+    pub fn read(volts: Volt, u_v: f64) -> Self {
+        Self {
+            volts,
+            u_v: on_one_closure(u_v),
+        }
+    }
+}
+
+/// Drop of one closure, turned to the forward direction, volts at the terminal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drop {
+    turned: Volt,
+    /// How often the zero enters `turned`: +1 forward, -1 reversed, 0 in a drop that is free of it.
+    zeros: f64,
+    u_v: f64,
+}
+
+impl Drop {
+    /// Returns the drop of a closure with one reading, forward or reversed; `reading_v` is the uncertainty of a reading.
+    pub fn single(read: Volt, reverse: bool, reading_v: f64) -> Self {
+        let sign = if reverse { -1.0 } else { 1.0 };
+        Self {
+            turned: read * sign,
+            zeros: sign,
+            u_v: on_one_closure(reading_v),
+        }
+    }
+
+    /// Returns the drop of a closure read in both directions.
+    pub fn reversed(closure: Closure, reading_v: f64) -> Self {
+        Self {
+            turned: closure.drop,
+            zeros: 0.0,
+            u_v: closure.u_v(reading_v),
+        }
+    }
+
+    /// Returns the drop that the current causes.
+    pub fn without(&self, zero: Zero) -> Volt {
+        self.turned - zero.volts * self.zeros
+    }
+}
+
+/// Returns the mean resistance of these closures in milliohms; `None` without a closure. The budget omits the scatter
+/// from closure to closure: the result describes these closures.
+pub fn resistance(drops: &[Drop], zero: Zero, mohm_per_v: Factor) -> Option<Reading> {
     if drops.is_empty() {
         return None;
     }
     let n = drops.len() as f64;
-    let value = mohm_per_v.value * drops.iter().map(|drop| drop.0).sum::<f64>() / n;
+    let mean_v = drops.iter().map(|it| it.without(zero).0).sum::<f64>() / n;
+    let zeros = drops.iter().map(|it| it.zeros).sum::<f64>() / n;
+    let own_2 = drops.iter().map(|it| it.u_v.powi(2)).sum::<f64>() / n.powi(2);
+    let value = mohm_per_v.value * mean_v;
     let budget = Budget::default()
-        .with_random("reading", mohm_per_v.value * mean_u_v)
+        .with_random(
+            "reading",
+            mohm_per_v.value * own_2.sqrt().hypot(zeros * zero.u_v),
+        )
         .with(
             "reference resistor",
             value * mohm_per_v.u / mohm_per_v.value,
@@ -85,14 +149,38 @@ pub fn resistance(drops: &[Volt], mohm_per_v: Factor, mean_u_v: f64) -> Option<R
 mod tests {
     use super::*;
 
+    const PER_V: Factor = Factor {
+        value: 20.0,
+        u: 0.005,
+    };
+
+    fn mohm(drops: &[Drop], zero: Zero) -> Reading {
+        resistance(drops, zero, PER_V).expect("a closure")
+    }
+
     #[test]
     fn reversal_removes_emf_and_offset() {
         let read = [0.9 + 0.0105, -0.9 + 0.0105].map(Volt);
         let closure = Closure::of(&read, Polarities::PlusMinus).expect("two readings");
-        let reading =
-            resistance(&[closure.drop], Factor::new(20.0, 0.005), 0.002).expect("one closure");
+        let reading = mohm(&[Drop::reversed(closure, 0.002)], Zero::unknown());
         assert!((reading.value - 18.0).abs() < 1e-12);
         assert!((closure.zero.0 - 0.0105).abs() < 1e-12);
+    }
+
+    #[test]
+    fn two_closures_in_opposite_directions_need_no_zero() {
+        let forward = Drop::single(Volt(0.9 + 0.0105), false, 0.002);
+        let reversed = Drop::single(Volt(-1.1 + 0.0105), true, 0.002);
+        let pair = mohm(&[forward, reversed], Zero::unknown());
+        assert!((pair.value - 20.0).abs() < 1e-12, "mean of 18 and 22");
+        assert!(pair.expanded() < 0.1);
+        let alone = mohm(&[forward], Zero::unknown());
+        assert!((alone.value - 18.0).abs() < alone.expanded(), "{alone:?}");
+        assert!(alone.expanded() > 1.0);
+        let zero = Zero::read(Volt(0.0105), 0.002);
+        let third = mohm(&[forward, reversed, forward], zero);
+        assert!((third.value - 58.0 / 3.0).abs() < 1e-12);
+        assert!(third.expanded() < 0.1);
     }
 
     #[test]
@@ -110,21 +198,22 @@ mod tests {
 
     #[test]
     fn a_shared_zero_is_not_averaged_away() {
-        let half = |readings, later| u_with_later_v(readings, later, 1.0, 0.0).powi(2);
-        for later in [0, 1, 3, 100] {
-            assert!((half(2, later) - 0.5).abs() < 1e-12, "{later}");
-        }
-        assert!((half(4, 0) - 0.25).abs() < 1e-12);
-        assert!((half(4, 1) - 0.375).abs() < 1e-12);
-        let moved = u_with_later_v(2, 1, 0.0, 1.0);
-        assert!(
-            (moved - 0.5).abs() < 1e-12,
-            "half of the mean is from the later one"
-        );
+        let zero = Zero {
+            volts: Volt(0.0),
+            u_v: 1.0,
+        };
+        let drop = Drop {
+            turned: Volt(0.9),
+            zeros: 1.0,
+            u_v: 1.0,
+        };
+        let u_v = |closures| mohm(&vec![drop; closures], zero).budget.0[0].u / PER_V.value;
+        assert!((u_v(1) - 2f64.sqrt()).abs() < 1e-12);
+        assert!((u_v(100) - 1.01f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]
     fn no_closure_no_resistance() {
-        assert!(resistance(&[], Factor::new(20.0, 0.005), 0.002).is_none());
+        assert!(resistance(&[], Zero::unknown(), PER_V).is_none());
     }
 }

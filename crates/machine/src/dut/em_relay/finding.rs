@@ -64,7 +64,7 @@ pub enum Finding {
     TrackNotReadable,
     /// The reading of a contact drop is not usable.
     DropNotReadable(Contact),
-    /// No zero reading to subtract from the NC drop.
+    /// No zero reading to subtract from the NC drop: only in rows of earlier versions.
     DropWithoutZero,
     /// A contact resistance below any real one; detail: the figure.
     ContactImplausible(Contact),

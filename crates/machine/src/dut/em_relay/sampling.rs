@@ -1,8 +1,9 @@
 //! Number of readings per result: scans of the coil, polarities and closures of a contact. The recipe sets them next
 //! to the strategies of the thresholds.
 //!
-//! Polarities of one closure: `plus_minus` cancels what is constant (offset, thermal EMF); `plus_minus_minus_plus`
-//! also cancels linear drift, and halves the variance of the reading.
+//! Polarities of closures: `alternating` reads each closure once, the first two of a contact in opposite directions.
+//! `plus_minus` reads each NO closure and the NC closure at rest in both. Either cancels what is constant (offset,
+//! thermal EMF); `plus_minus_minus_plus` also cancels linear drift, and halves the variance of the reading.
 //!
 //! Closures of one part scatter by their contact films, far more than readings do. With `stops_early` a part gets
 //! another closure only while `|mean - limit| <= 3 sqrt(u^2 + s^2 / n)`: u is the uncertainty that all closures share,
@@ -16,24 +17,28 @@ use units::Unit;
 /// the parts that lie at the limit are judged wrongly.
 const CLEAR: f64 = 3.0;
 
-/// Directions of the source on one closure.
+/// Directions of the source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Polarities {
-    /// Forward, reversed.
+    /// One direction per closure. NC: reversed at rest, forward after the timed release. NO: forward after the timed
+    /// operation, reversed on the closure of the coarse ramps.
     #[default]
+    Alternating,
+    /// Forward, reversed on one closure.
     PlusMinus,
-    /// Forward, reversed, reversed, forward.
+    /// Forward, reversed, reversed, forward on one closure.
     PlusMinusMinusPlus,
 }
 
 impl Polarities {
     /// Names in recipes.
-    pub const NAMES: [&'static str; 2] = ["plus_minus", "plus_minus_minus_plus"];
+    pub const NAMES: [&'static str; 3] = ["alternating", "plus_minus", "plus_minus_minus_plus"];
 
-    /// Returns the signs of the source in the order of the readings.
+    /// Returns the signs of the source on one closure in the order of the readings.
     pub fn signs(self) -> &'static [f64] {
         match self {
+            Self::Alternating => &[1.0],
             Self::PlusMinus => &[1.0, -1.0],
             Self::PlusMinusMinusPlus => &[1.0, -1.0, -1.0, 1.0],
         }
@@ -44,7 +49,7 @@ impl Polarities {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ContactSampling {
-    /// Polarities of every NO closure and of the NC closure at rest.
+    /// Directions in which the closures are read.
     pub polarities: Polarities,
     /// Greatest number of timed closures of either contact; NC has the closure at rest in addition.
     pub closures: u32,
@@ -57,7 +62,7 @@ pub struct ContactSampling {
 impl Default for ContactSampling {
     fn default() -> Self {
         Self {
-            polarities: Polarities::PlusMinus,
+            polarities: Polarities::Alternating,
             closures: 1,
             stops_early: false,
             closure_scatter_pct: 10,

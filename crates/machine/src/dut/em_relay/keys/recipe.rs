@@ -45,7 +45,7 @@ const COIL: &[Key] = table! {
 };
 
 const CONTACT: &[Key] = table! {
-    optional("polarities", Form::Choice(&Polarities::NAMES), "station", "directions of the source on one closure; default plus_minus");
+    optional("polarities", Form::Choice(&Polarities::NAMES), "station", "directions of the source on the closures; default alternating, which needs the coarse ramps of both thresholds, else plus_minus");
     optional("closures", whole(1, 20, ""), "station", "timed closures of either contact, at the most; default 1");
     optional("stops_early", Form::Flag, "station", "no further closure once both contacts are 3 standard deviations clear of their limits");
     optional("closure_scatter_pct", whole(0, 100, "%"), "station", "least scatter of a film from closure to closure (1 sd); default 10");

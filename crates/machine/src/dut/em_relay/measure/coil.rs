@@ -2,6 +2,7 @@
 //! from the pre-bias too, so the coil stays driven.
 
 use super::board::{Armature, BoardState, select_diode};
+use super::contact::{self, SOURCE_SETTLES};
 use super::state::TestState;
 use super::{Context, INTERLOCK, OFF, Stage, set};
 use crate::dut::em_relay::Finding;
@@ -44,7 +45,9 @@ const IDLE: [(DigitalOut, bool); 8] = [
 ];
 
 /// Reads the coil. The stage arms the board for the operate ramp before it reads, because the supply must stay still
-/// between ARM and ramp. A repeated stage first releases the relay and takes the ramps down.
+/// between ARM and ramp. While the coil settles, the stage reads the drop of NC without current, which `alternating`
+/// needs; then it prepares the source for the reversed reading of the NO closure of the ramps. A repeated stage first
+/// releases the relay and takes the ramps down.
 pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let prebias = Volt(context.relay.test.prebias_v);
@@ -52,6 +55,8 @@ pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
     let mut acts = Vec::new();
+    let alternates = context.alternates() && !repeated;
+    let settles = INTERLOCK + Span::ms(sampling.settles_ms.into());
     if repeated {
         let down = OFF.max(coarse_takes).max(board.still_ramping + fine_takes);
         acts.extend([coarse, fine, set(&IDLE), Act::Wait(down)]);
@@ -64,12 +69,26 @@ pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec
             (RampMode, true),
             (EventNoBreak, false),
             (Arm, false),
-            (SelectNo, true),
+            (SelectNo, !alternates),
             (CoilDrive, true),
         ]),
-        Act::Wait(INTERLOCK + Span::ms(sampling.settles_ms.into())),
         Act::Mark,
-        set(&[(Arm, true)]),
+    ]);
+    if alternates {
+        acts.extend([
+            Act::ConvertSinceMark(INTERLOCK + SOURCE_SETTLES + context.fresh(1)),
+            Act::Read(Read::Drop),
+        ]);
+    }
+    acts.extend([
+        Act::WaitSinceMark(settles),
+        Act::Mark,
+        set(&[
+            (Arm, true),
+            (SelectNo, true),
+            (SourceOn, alternates),
+            (SourceReverse, alternates),
+        ]),
         Act::Read(Read::Gates),
         Act::ConvertSinceMark(context.fresh(CHANNELS)),
         Act::Read(Read::Coil),
@@ -147,6 +166,9 @@ pub(super) fn conclude(
     readings: &Readings,
     state: &mut TestState,
 ) -> Option<Stage> {
+    if context.alternates() {
+        contact::keep_zero(context, &readings.drops, state);
+    }
     let TestState { plan, record, .. } = state;
     let calibration = &context.calibration;
     let mut scans = Vec::new();

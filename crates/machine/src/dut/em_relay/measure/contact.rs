@@ -1,12 +1,13 @@
 //! Contact resistance of a closure: source on, then one conversion per polarity of the recipe, each begun after the
-//! source has settled.
+//! source has settled. Under `alternating` the reversed reading of NO and the zero ride with the ramps and the coil.
 
 use super::board::{Armature, BoardState};
+use super::plan::Plan;
 use super::state::TestState;
-use super::{Context, INTERLOCK, Stage, TestRecord, set};
+use super::{Context, INTERLOCK, Stage, set};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
-use crate::dut::em_relay::contact::{Closure, resistance, u_with_later_v};
+use crate::dut::em_relay::contact::{Closure, Drop, Zero, resistance};
 use crate::dut::em_relay::finding::{Contact, Finding};
 use crate::dut::em_relay::points::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
 use crate::dut::em_relay::readings::Readings;
@@ -16,8 +17,6 @@ use units::{Celsius, Span, Volt};
 
 /// Smallest resistance of any contact of the 10 A class, milliohms; with the source off the drop reads about 0.
 const LEAST_MOHM: f64 = 0.5;
-/// Change of the thermal EMF between two closures (30 uV), volts at the terminal, behind the amplifier with gain 50.
-const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Settling time of source and amplifier.
 pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 
@@ -33,7 +32,8 @@ fn directed(context: &Context, reverse: bool) -> [Act; 4] {
 /// Returns the acts that read every polarity after the first, forward one; the source stays on in its last direction.
 pub(super) fn reversed(context: &Context) -> Vec<Act> {
     let mut acts = directed(context, true).to_vec();
-    match context.relay.test.strategy.contact.polarities {
+    match context.polarities() {
+        Polarities::Alternating => acts.clear(),
         Polarities::PlusMinus => {}
         Polarities::PlusMinusMinusPlus => {
             acts.extend([
@@ -47,11 +47,16 @@ pub(super) fn reversed(context: &Context) -> Vec<Act> {
     acts
 }
 
-/// Reads the NC contact at rest in all polarities. During the first conversion the stage reads the temperature and
+/// Reads the NC contact at rest, reversed under `alternating`, else in all polarities. During the first conversion the stage reads the temperature and
 /// prepares the timed operation: ARM, counters, supply at nominal with the drive off.
 pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
     let mut acts = vec![
-        set(&[(KelvinTest, false), (SourceOn, true), (Arm, true)]),
+        set(&[
+            (KelvinTest, false),
+            (SourceOn, true),
+            (SourceReverse, context.alternates()),
+            (Arm, true),
+        ]),
         Act::Mark,
         Act::Read(Read::Track),
         Act::Read(Read::Board),
@@ -106,8 +111,7 @@ pub(super) fn closure(context: &Context, readings: &Readings) -> Result<Closure,
         .iter()
         .map(|sample| drop_of(Some(sample), compliance))
         .collect();
-    let polarities = context.relay.test.strategy.contact.polarities;
-    Closure::of(&drops?, polarities).ok_or(Unread::Missing)
+    Closure::of(&drops?, context.polarities()).ok_or(Unread::Missing)
 }
 
 pub(super) fn conclude_nc(
@@ -121,10 +125,16 @@ pub(super) fn conclude_nc(
         }
         Some(_) | None => state.record.stop(Finding::TrackNotReadable),
     }
+    let u_v = context.reading_u_v();
     match closure(context, readings) {
+        Ok(closure) if context.alternates() => {
+            let drop = Drop::single(closure.drop, true, u_v);
+            add(context, (Contact::Nc, drop), &readings.drops, state);
+        }
         Ok(closure) => {
-            state.plan.drop_zero = Some(closure.zero);
-            add_nc(context, closure.drop, &readings.drops, state);
+            state.plan.zero = Some(Zero::read(closure.zero, closure.u_v(u_v)));
+            let drop = Drop::reversed(closure, u_v);
+            add(context, (Contact::Nc, drop), &readings.drops, state);
         }
         Err(unread) => {
             state.board.armature = Armature::Unknown;
@@ -134,47 +144,76 @@ pub(super) fn conclude_nc(
     None
 }
 
-/// Ends the test and returns true when the resistance is below that of any real contact: the source was off, or the
-/// reply belongs to another request.
-pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecord) -> bool {
-    let implausible = mohm.is_nan() || mohm < LEAST_MOHM;
-    if implausible {
-        let detail = format!("{mohm:.2} mOhm");
-        record.stop(Finding::ContactImplausible(contact).with(detail));
+/// Returns the parameter of a contact, and the drops of its closures.
+fn of(contact: Contact, plan: &Plan) -> (Parameter, &[Drop]) {
+    match contact {
+        Contact::No => (Parameter::ContactResistanceNo, &plan.no),
+        Contact::Nc => (Parameter::ContactResistanceNc, &plan.nc),
     }
-    implausible
+}
+
+/// Returns the resistance of each closure read so far.
+fn each_mohm(context: &Context, contact: Contact, plan: &Plan) -> Vec<f64> {
+    let per_v = context.calibration.contact_mohm_per_v.value;
+    let zero = plan.zero.unwrap_or(Zero::unknown());
+    let drops = of(contact, plan).1.iter();
+    drops.map(|it| per_v * it.without(zero).0).collect()
 }
 
 /// Returns true when further closures would not change the judgement of this contact.
-pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Parameter) -> bool {
-    let (recipe, record) = (&context.recipe, &state.record);
-    let per_v = context.calibration.contact_mohm_per_v.value;
-    let values_mohm: Vec<f64> = if parameter == Parameter::ContactResistanceNc {
-        state.plan.nc_drops.iter().map(|it| per_v * it.0).collect()
-    } else {
-        record.each(parameter).map(|it| it.value).collect()
-    };
-    let u_mohm = record
+pub(super) fn is_clear(context: &Context, state: &TestState, contact: Contact) -> bool {
+    let (recipe, parameter) = (&context.recipe, of(contact, &state.plan).0);
+    let u_mohm = state
+        .record
         .result(parameter)
         .map_or(f64::INFINITY, |reading| reading.budget.combined());
     let sampling = context.relay.test.strategy.contact;
+    let values_mohm = each_mohm(context, contact, &state.plan);
     sampling.is_clear(&values_mohm, u_mohm, &recipe.limits.of(parameter))
 }
 
-/// Adds one NC closure; the result is the mean of all NC closures.
-pub(super) fn add_nc(context: &Context, drop: Volt, samples: &[Sample], state: &mut TestState) {
-    let (drops, record) = (&mut state.plan.nc_drops, &mut state.record);
-    let per_v = context.calibration.contact_mohm_per_v;
-    drops.push(drop);
-    record.own.nc_mohm.push(per_v.value * drop.0);
-    let first = context.relay.test.strategy.contact.polarities.signs().len();
-    let later = drops.len() - 1;
-    let u = u_with_later_v(first, later, context.reading_u_v(), EMF_MOVES_V);
-    if let Some(reading) = resistance(drops, per_v, u) {
-        if is_implausible(Contact::Nc, reading.value, record) {
-            return;
-        }
-        record.forget(Parameter::ContactResistanceNc);
-        record.found(Parameter::ContactResistanceNc, reading, samples);
+/// Adds one closure; the result is the mean of all closures. Ends the test when its resistance is below that of any real
+/// contact: the source was off, or the reply belongs to another request.
+pub(super) fn add(
+    context: &Context,
+    (contact, drop): (Contact, Drop),
+    samples: &[Sample],
+    state: &mut TestState,
+) {
+    match contact {
+        Contact::No => state.plan.no.push(drop),
+        Contact::Nc => state.plan.nc.push(drop),
+    }
+    let mohm = each_mohm(context, contact, &state.plan).pop();
+    if let Some(mohm) = mohm.filter(|it| it.is_nan() || *it < LEAST_MOHM) {
+        let detail = format!("{mohm:.2} mOhm");
+        let finding = Finding::ContactImplausible(contact).with(detail);
+        state.record.stop(finding);
+        return;
+    }
+    evaluate(context, contact, samples, state);
+}
+
+/// Keeps the drop without current of a closed contact, and evaluates the closures again.
+pub(super) fn keep_zero(context: &Context, samples: &[Sample], state: &mut TestState) {
+    let Ok(volts) = drop_of(samples.first(), false) else {
+        return;
+    };
+    state.plan.zero = Some(Zero::read(volts, context.reading_u_v()));
+    for contact in [Contact::No, Contact::Nc] {
+        evaluate(context, contact, samples, state);
+    }
+}
+
+fn evaluate(context: &Context, contact: Contact, samples: &[Sample], state: &mut TestState) {
+    let TestState { plan, record, .. } = state;
+    let (parameter, drops) = of(contact, plan);
+    let zero = plan.zero.unwrap_or(Zero::unknown());
+    if let Some(reading) = resistance(drops, zero, context.calibration.contact_mohm_per_v) {
+        record.forget(parameter);
+        record.found(parameter, reading, samples);
+    }
+    if contact == Contact::Nc && plan.zero.is_some() {
+        record.own.nc_mohm = each_mohm(context, contact, plan);
     }
 }

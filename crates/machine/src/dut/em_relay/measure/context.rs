@@ -9,6 +9,7 @@ use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
 use crate::dut::em_relay::reference_part::interim;
+use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::settings::{ReferencePart, ReferenceSettings};
 use crate::dut::em_relay::threshold::Direction;
@@ -146,6 +147,22 @@ impl Context {
             Some((_, strategy)) if overshoot.fine_v.u.is_finite() => strategy,
             Some(_) | None => Strategy::CoarseFine,
         }
+    }
+
+    /// Returns in which directions the contacts are read. The second NO closure of `alternating` is that of the coarse
+    /// ramps: without them each closure is read in both directions.
+    pub fn polarities(&self) -> Polarities {
+        let thresholds = [Parameter::OperateVoltage, Parameter::ReleaseVoltage];
+        let ramps = thresholds.iter().all(|it| self.strategy(*it).ramps());
+        match self.relay.test.strategy.contact.polarities {
+            Polarities::Alternating if !ramps => Polarities::PlusMinus,
+            asked => asked,
+        }
+    }
+
+    /// Returns true when each closure is read in one direction.
+    pub fn alternates(&self) -> bool {
+        self.polarities() == Polarities::Alternating
     }
 
     /// Returns the overshoot of a direction; before any reference part, an assumed overshoot with a wide scatter.

@@ -47,6 +47,7 @@ mod timing;
 mod verdict;
 
 use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::finding::Contact;
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::{Finding, Parameter};
@@ -180,15 +181,12 @@ impl Test {
     fn add_closure(&mut self) {
         let record = &self.state.record;
         let sampling = self.context.relay.test.strategy.contact;
-        let closures = record.attempts(Parameter::ContactResistanceNo) as u64;
+        let closures = record.attempts(Parameter::OperateTime) as u64;
         if self.slow_done || record.stopped() || closures >= sampling.closures.into() {
             return;
         }
-        let clear = |parameter| contact::is_clear(&self.context, &self.state, parameter);
-        if sampling.stops_early
-            && clear(Parameter::ContactResistanceNo)
-            && clear(Parameter::ContactResistanceNc)
-        {
+        let clear = |contact| contact::is_clear(&self.context, &self.state, contact);
+        if sampling.stops_early && clear(Contact::No) && clear(Contact::Nc) {
             return;
         }
         self.stages.push_front(Stage::TimedRelease);

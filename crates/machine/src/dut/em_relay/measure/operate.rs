@@ -8,7 +8,9 @@ use super::{Context, OFF, Ramp, Stage, set};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::points::DigitalIn;
-use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::dut::em_relay::points::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::supply::RAMP_MARGIN;
 use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
@@ -19,9 +21,13 @@ const RELEASE_HEADROOM: Volt = Volt(0.8);
 /// Time for flux and armature to reach equilibrium at the start level.
 pub(super) const SETTLES: Span = Span::ms(25);
 /// Longest time to detect the latch by a poll and to write the reversal of the ramp.
-const TURNS: Span = Span::ms(10);
+pub(super) const TURNS: Span = Span::ms(10);
 /// Time after the end of a ramp up to which a contact event still counts.
 pub(super) const LATE: Span = Span::ms(25);
+
+/// Voltage to which the fine output rises while the armature is sealed for the coarse release. From there the fine operate
+/// ramp ends high enough for the fine release ramp, which would otherwise wait for the output.
+const LIFT: Volt = Volt(0.016);
 
 /// Returns the height of the coarse output at which the release ramp begins.
 pub(super) fn release_start(context: &Context) -> Volt {
@@ -46,6 +52,7 @@ pub(super) fn acts_coarse(context: &Context, board: BoardState) -> (Vec<Act>, Bo
     let (start, span) = (board.supply.total(), top - board.supply.coarse());
     let (ramp, takes) = board.supply.ramp_coarse(top);
     let (turn, _) = board.supply.ramp_coarse(release_start(context));
+    let (lift, _) = board.supply.ramp_fine(context.scale().of_range(LIFT));
     acts.extend([
         ramp,
         Act::Until {
@@ -54,6 +61,7 @@ pub(super) fn acts_coarse(context: &Context, board: BoardState) -> (Vec<Act>, Bo
         },
         Act::Mark,
         turn,
+        lift,
         Act::Read(Read::Gate),
     ]);
     board.armature = Armature::Unknown;
@@ -69,7 +77,13 @@ fn prepared(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     acts.extend([
         coarse,
         supply.step_to(Volt(context.relay.test.prebias_v)),
-        set(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
+        set(&[
+            (SourceOn, context.alternates()),
+            (SourceReverse, context.alternates()),
+            (RampMode, true),
+            (SelectNo, true),
+            (EventNoBreak, false),
+        ]),
         Act::RampSinceMark(OFF.max(takes.max(board.still_ramping))),
         set(&[(CoilDrive, true)]),
         set(&[(Arm, true)]),
@@ -117,11 +131,12 @@ pub(super) fn conclude_coarse(
         .then_some(Stage::OperateFine(0))
 }
 
-/// Returns the time from the event until the coarse ramp is back at [`release_start`]. The ramp still rises while a
-/// poll detects the event and a write reverses the ramp.
+/// Returns the time from the event until the coarse ramp is back at [`release_start`] and the fine output at [`LIFT`].
+/// The coarse ramp still rises while a poll detects the event and a write reverses the ramp.
 fn turning(context: &Context, climbed: Volt) -> Span {
     let per_s = context.calibration.coarse_v_per_s.value;
     let over = climbed.0 + per_s * TURNS.as_seconds();
     let back = over.min(context.relay.test.coarse_span_v) - release_start(context).0;
-    TURNS + Span::seconds(back.abs() / per_s) + RAMP_MARGIN
+    let lift_s = context.scale().of_range(LIFT).0 / context.calibration.fine_v_per_s.value;
+    TURNS + Span::seconds(lift_s.max(back.abs() / per_s)) + RAMP_MARGIN
 }

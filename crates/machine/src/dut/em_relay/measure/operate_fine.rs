@@ -18,8 +18,8 @@ use units::{Span, Volt};
 
 /// First step of the approach, as a fraction of the start of the fine ramp.
 pub(super) const APPROACH: f64 = 0.93;
-/// Highest voltage of the fine output that the stage leaves in place instead of taking it to 0.
-const LEFT: Volt = Volt(0.02);
+/// Highest voltage of the fine output that the stage leaves in place instead of taking it to 0, which takes 0.7 s a volt.
+const LEFT: Volt = Volt(0.5);
 /// Least voltage that the level output contributes to the first step of the approach; the coarse output contributes at
 /// most the remainder.
 const ROOM: Volt = Volt(0.3);
@@ -37,13 +37,13 @@ pub(super) fn acts(
         pace.run_up(context.calibration.fine_v_per_s.value),
     );
     let (placed, jump) = (searched.rising(run_up, scale), scale.of_range(JUMP));
-    let (mut supply, falls) = (board.supply, falling(board));
+    let (mut supply, moves) = (board.supply, board.still_ramping);
     let mut acts = drive_off(board.armature);
-    acts.extend(make_room(context, &mut supply, falls, placed.start));
+    acts.extend(make_room(context, &mut supply, moves, placed.start));
     acts.extend([
         supply.step_to(placed.start * APPROACH),
-        // The supply may still fall during the first step.
-        Act::WaitSinceMark(OFF.max(Span(falls.0.saturating_sub(pace.approaches().0)))),
+        // The supply may still move during the first step.
+        Act::WaitSinceMark(OFF.max(Span(moves.0.saturating_sub(pace.approaches().0)))),
         set(&[
             (SourceOn, false),
             (SourceReverse, false),
@@ -86,24 +86,15 @@ pub(super) fn acts(
     (acts, left)
 }
 
-/// Returns how long after the last mark the previous ramp still falls; 0 after a rising ramp, which this stage reverses
-/// at once.
-fn falling(board: BoardState) -> Span {
-    match board.armature.is_released() {
-        true => board.still_ramping,
-        false => Span(0),
-    }
-}
-
-/// Lowers the coarse output to the share that the approach leaves it, and the fine output to 0. The previous ramp still
-/// falls until `falls` after the last mark.
-fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
+/// Lowers the coarse output to the share that the approach leaves it, and a high fine output to 0. The previous ramp
+/// still moves until `moves` after the last mark.
+fn make_room(context: &Context, supply: &mut Supply, moves: Span, start: Volt) -> Vec<Act> {
     let (mut acts, scale) = (Vec::new(), context.scale());
     let mut wait = Span(0);
     if supply.fine() > scale.of_range(LEFT) {
         let (fine, takes) = supply.ramp_fine(Volt(0.0));
         acts.push(fine);
-        wait = falls + takes;
+        wait = moves + takes;
     }
     let room =
         (start.0 * APPROACH - scale.of_range(ROOM).0).clamp(0.0, context.relay.test.coarse_span_v);

@@ -3,6 +3,7 @@
 use super::ramp::Expected;
 use super::search::Search;
 use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::contact::{Drop, Zero};
 use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::threshold::Direction;
 use units::Volt;
@@ -11,17 +12,19 @@ use units::Volt;
 const REPEAT_SD: Volt = Volt(0.008);
 
 /// What earlier stages found and later ones need, but the test record does not keep: expected thresholds, the search
-/// under way, voltage drops.
+/// under way, contact drops.
 #[derive(Debug, Clone, Default)]
 pub struct Plan {
     operate: Option<Expected>,
     release: Option<Expected>,
     /// The search by levels under way.
     pub search: Option<Search>,
-    /// Contact drop read while no current flows, volts at the terminal.
-    pub drop_zero: Option<Volt>,
-    /// NC drops of the closures read so far, free of offset.
-    pub nc_drops: Vec<Volt>,
+    /// Contact drop without current; `None` until read.
+    pub zero: Option<Zero>,
+    /// Drops of the NO closures read so far.
+    pub no: Vec<Drop>,
+    /// Drops of the NC closures read so far.
+    pub nc: Vec<Drop>,
     /// Contact that does not move at nominal voltage: the part fails for this finding unless the coil proves to be the
     /// cause.
     pub unmoved: Option<Finding>,

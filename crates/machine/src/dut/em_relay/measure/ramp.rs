@@ -24,13 +24,15 @@ pub(super) const JUMP: Volt = Volt(0.045);
 const RUN_DOWN: Volt = Volt(0.085);
 /// Distance of a falling ramp after which only 1 mV of the seal's effect remains: a later event belongs to the ramp.
 pub(super) const SETTLED_DOWN: Volt = Volt(0.068);
-/// Length of a ramp beyond the far end of its interval, for the scatter of the overshoot.
-const FAR_MARGIN: Volt = Volt(0.015);
+/// Length of a rising and of a falling ramp beyond the far end of its interval, for the scatter of the overshoot. A
+/// rising ramp ends at the event, so that its length costs no time; a falling one needs a fine output as high as it is
+/// long.
+const FAR_MARGINS: [Volt; 2] = [Volt(0.2), Volt(0.015)];
 /// Half width of an interval, in standard deviations of its estimate. At this value one ramp in four hundred misses,
 /// which costs a second ramp of 0.2 s; each further half deviation would cost every part 7 ms.
 const COVERAGE: f64 = 3.0;
 /// Largest standard deviation that widens an interval. Each further 10 mV would cost every such part 7 ms, whereas a
-/// miss (one part in some dozens) costs 0.3 s.
+/// miss (one part in some dozens) costs 0.2 s.
 const WIDEST_SD: Volt = Volt(0.02);
 /// Widest half width that a ramp searches; a search by halves is quicker beyond it.
 const WIDEST: Volt = Volt(0.2);
@@ -104,9 +106,14 @@ impl Expected {
 
     fn placed(&self, direction: Direction, run: Volt, scale: Scale) -> Placed {
         let lead = scale.of_range(JUMP) + run;
+        let [rising, falling] = FAR_MARGINS;
+        let beyond = match direction {
+            Direction::Rising => rising,
+            Direction::Falling => falling,
+        };
         Placed {
             start: self.centre - (self.half_width + lead) * direction.sign(),
-            span: lead + self.half_width * 2.0 + scale.of_range(FAR_MARGIN),
+            span: lead + self.half_width * 2.0 + scale.of_range(beyond),
         }
     }
 

@@ -4,18 +4,23 @@
 //! operation remains the last one at nominal.
 
 use super::board::{Armature, BoardState, SentRamp};
+use super::contact::{self, SOURCE_SETTLES, drop_of};
 use super::indication::gate0;
-use super::operate::{SETTLES, release_start};
+use super::operate::{SETTLES, TURNS, release_start};
 use super::ramp::{Expected, JUMP, after_coarse};
 use super::search::Search;
 use super::state::TestState;
+use super::timing::SOURCE_FLOWS;
 use super::{Context, INTERLOCK, Ramp, Stage, set};
 use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::contact::Drop;
+use crate::dut::em_relay::finding::Contact;
 use crate::dut::em_relay::points::DigitalIn;
 use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
 use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::supply::RAMP_MARGIN;
 use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
 use units::{Span, Volt};
 
@@ -33,14 +38,14 @@ const FINE_SETTLES: Span = Span::ms(35);
 const LATE: Span = Span::ms(12);
 
 /// Seals the armature, steps to the start of the falling ramp and arms the board. Does not first release an operated
-/// armature, and seals it until the running ramp has ended.
-fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
+/// armature, and seals it until the running ramp has ended. With `source` the reversed source stays on, for a reading of
+/// the closed contact.
+fn seal(context: &Context, board: BoardState, start: Volt, source: bool) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
-    // The source is off, so that the contact breaks without load; other stages have read its resistance.
     let falling = [
-        (SourceOn, false),
-        (SourceReverse, false),
+        (SourceOn, source),
+        (SourceReverse, source),
         (RampMode, true),
         (SelectNo, true),
         (EventNoBreak, true),
@@ -79,12 +84,23 @@ fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardSt
 }
 
 /// Reads the counters, takes ARM off so that the next stage can raise it again, and waits for flux and armature to
-/// settle after the step.
-fn settled(within: Span) -> [Act; 3] {
-    [
-        Act::Read(Read::Gates),
-        set(&[(Arm, false)]),
+/// settle after the step. `read` comes before the source goes off, so that the contact breaks without load.
+fn settled(within: Span, read: &[Act]) -> Vec<Act> {
+    let mut acts = vec![Act::Read(Read::Gates)];
+    acts.extend_from_slice(read);
+    acts.extend([
+        set(&[(Arm, false), (SourceOn, false), (SourceReverse, false)]),
         Act::WaitSinceMark(within),
+    ]);
+    acts
+}
+
+/// Reads the drop of NO on the closure of the ramps. The mark lies at least [`SEAL_TIME`] after the closure.
+fn drop_of_ramps(context: &Context) -> [Act; 2] {
+    let flows = SOURCE_FLOWS + SOURCE_SETTLES + context.fresh(1);
+    [
+        Act::ConvertSinceMark(Span(flows.0.saturating_sub(SEAL_TIME.0))),
+        Act::Read(Read::Drop),
     ]
 }
 
@@ -108,10 +124,16 @@ pub(super) fn acts_coarse(context: &Context, mut board: BoardState) -> (Vec<Act>
         acts.extend([ramp, Act::Wait(takes)]);
     }
     let start = board.supply.coarse() + board.supply.fine();
-    let (sealing, mut board) = seal(context, board, start);
+    let source = context.alternates() && board.armature == Armature::Operated;
+    let (sealing, mut board) = seal(context, board, start, source);
     let (start, span) = (board.supply.total(), board.supply.coarse());
     acts.extend(sealing);
-    acts.extend(settled(SETTLES));
+    let read = if source {
+        drop_of_ramps(context).to_vec()
+    } else {
+        Vec::new()
+    };
+    acts.extend(settled(SETTLES, &read));
     let (ramp, takes) = board.supply.ramp_coarse(Volt(0.0));
     acts.push(ramp);
     acts.extend(until_break(takes));
@@ -125,12 +147,21 @@ pub(super) fn conclude_coarse(
     readings: &Readings,
     state: &mut TestState,
 ) -> Option<Stage> {
-    let (start, test) = (state.board.sent().start, &context.relay.test);
+    if let Some(read) = readings.drops.first() {
+        match drop_of(Some(read), false) {
+            Ok(drop) => {
+                let drop = Drop::single(drop, true, context.reading_u_v());
+                contact::add(context, (Contact::No, drop), &readings.drops, state);
+            }
+            Err(unread) => state.record.stop(unread.of(Contact::No)),
+        }
+    }
+    let (SentRamp { start, span, .. }, test) = (state.board.sent(), &context.relay.test);
     let coarse_v_per_s = context.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
     let floor_v = coarse_v_per_s * LAST_REFRESHES * context.accuracy.ao_refresh_ms * 1e-3;
     let gate =
-        gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
+        gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < span.0 - floor_v);
     let (plan, record) = (&mut state.plan, &mut state.record);
     let Some(gate) = gate else {
         // The threshold lies below the coarse ramp, far from the threshold that the lot expects, so a wide search must
@@ -148,6 +179,18 @@ pub(super) fn conclude_coarse(
         .then_some(Stage::ReleaseFine(0))
 }
 
+/// Stops the rising fine ramp as soon as it can serve as the start of a falling one of the length `way`. Returns the act,
+/// and the time from the mark until the output rests.
+fn stopped_above(context: &Context, board: &mut BoardState, way: Volt) -> (Act, Span) {
+    let per_s = context.calibration.fine_v_per_s.value;
+    let rises = Span(board.still_ramping.0.saturating_sub(RAMP_MARGIN.0));
+    let at_event = board.supply.fine() - Volt(per_s * rises.as_seconds());
+    let end = way.0.max(at_event.0 + per_s * TURNS.as_seconds());
+    let (ramp, _) = board.supply.ramp_fine(Volt(end));
+    let takes = Span::seconds((end - at_event.0) / per_s) + RAMP_MARGIN;
+    (ramp, takes)
+}
+
 pub(super) fn acts_fine(
     context: &Context,
     mut board: BoardState,
@@ -159,23 +202,22 @@ pub(super) fn acts_fine(
     );
     let way = placed.span - jump;
     let mut acts = Vec::new();
-    if board.supply.fine() < way {
+    if board.armature == Armature::Operated && board.still_ramping > Span(0) {
+        let (ramp, takes) = stopped_above(context, &mut board, way);
+        board.still_ramping = takes;
+        acts.push(ramp);
+    } else if board.supply.fine() < way {
         let (fine, takes) = board.supply.ramp_fine(way);
-        // A rising ramp continues, a falling one reverses.
-        let rises = match board.armature == Armature::Operated {
-            true => board.still_ramping,
-            false => Span(0),
-        };
-        board.still_ramping = rises + takes;
+        board.still_ramping = takes;
         acts.push(fine);
     }
     let least = board.supply.coarse() + board.supply.fine() + jump;
     let top = Volt(placed.start.0.max(least.0));
-    let (sealing, mut board) = seal(context, board, top);
+    let (sealing, mut board) = seal(context, board, top, false);
     let (start, span) = (board.supply.total(), placed.span);
     acts.extend(sealing);
     acts.push(board.supply.step_to(top - jump));
-    acts.extend(settled(FINE_SETTLES));
+    acts.extend(settled(FINE_SETTLES, &[]));
     let (ramp, takes) = board.supply.ramp_fine(board.supply.fine() - way);
     acts.push(ramp);
     acts.extend(until_break(takes));

@@ -3,12 +3,12 @@
 
 use super::board::{Armature, BoardState, drive_off, select_diode};
 use super::coil::rest;
-use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
+use super::contact::{self, SOURCE_SETTLES, closure, drop_of, reversed};
 use super::state::TestState;
 use super::{Context, OFF, Stage, TestRecord, set};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
-use crate::dut::em_relay::contact::resistance;
+use crate::dut::em_relay::contact::Drop;
 use crate::dut::em_relay::finding::{Contact, Finding};
 use crate::dut::em_relay::points::DigitalIn;
 use crate::dut::em_relay::points::DigitalOut::{
@@ -28,7 +28,7 @@ const WINDOW_AFTER_LATCH: Span = Span::ms(21);
 const GATE_SKEW: u32 = 4;
 /// Time from the latch until the source drives its current: bounce ends within 6 ms (twice the specified class), and
 /// the source requires 5 ms of closed contact.
-const SOURCE_FLOWS: Span = Span::ms(11);
+pub(super) const SOURCE_FLOWS: Span = Span::ms(11);
 
 /// Operates the relay at nominal voltage. Reads the counters after ARM unless the NC stage has read them, because ARM
 /// closes a window that an interrupted test left open.
@@ -193,15 +193,14 @@ pub(super) fn conclude_operate(
         record,
     );
     state.board.armature = Armature::Operated;
+    let u_v = context.reading_u_v();
     match closure(context, readings) {
         Ok(closure) => {
-            let u = closure.u_v(context.reading_u_v());
-            if let Some(reading) =
-                resistance(&[closure.drop], context.calibration.contact_mohm_per_v, u)
-                && !is_implausible(Contact::No, reading.value, record)
-            {
-                record.found(Parameter::ContactResistanceNo, reading, &readings.drops);
-            }
+            let drop = match context.alternates() {
+                true => Drop::single(closure.drop, false, u_v),
+                false => Drop::reversed(closure, u_v),
+            };
+            contact::add(context, (Contact::No, drop), &readings.drops, state);
         }
         Err(unread) => record.stop(unread.of(Contact::No)),
     }
@@ -246,13 +245,12 @@ pub(super) fn conclude_release(
         record,
     );
     let compliance = readings.boards.iter().any(|board| board.compliance);
-    match (
-        drop_of(readings.drops.first(), compliance),
-        state.plan.drop_zero,
-    ) {
-        (Ok(drop), Some(zero)) => add_nc(context, drop - zero, &readings.drops, state),
-        (Ok(_), None) => record.stop(Finding::DropWithoutZero),
-        (Err(unread), _) => record.stop(unread.of(Contact::Nc)),
+    match drop_of(readings.drops.first(), compliance) {
+        Ok(drop) => {
+            let drop = Drop::single(drop, false, context.reading_u_v());
+            contact::add(context, (Contact::Nc, drop), &readings.drops, state);
+        }
+        Err(unread) => record.stop(unread.of(Contact::Nc)),
     }
     None
 }

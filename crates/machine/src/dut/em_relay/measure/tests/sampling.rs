@@ -2,13 +2,15 @@
 
 use super::super::{Stage, Test};
 use super::{at_23_c, context, good, scan};
-use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::contact::Drop;
+use crate::dut::em_relay::measure::board::Armature;
 use crate::dut::em_relay::measure::{Context, coil};
 use crate::dut::em_relay::points::DigitalOut::{SourceOn, SourceReverse};
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
+use crate::dut::em_relay::{Parameter, Strategy};
 use crate::gauge::budget::{Budget, Reading};
 use crate::handling::tests::MockRig;
 use crate::rig::sample::Sample;
@@ -42,9 +44,10 @@ fn directions(acts: &[Act]) -> Vec<bool> {
 
 #[test]
 fn contacts_are_read_in_the_recipes_polarities() {
+    let two = with(|it| it.contact.polarities = Polarities::PlusMinus);
     let four = with(|it| it.contact.polarities = Polarities::PlusMinusMinusPlus);
     for stage in [Stage::NcContact, Stage::TimedOperate] {
-        assert_eq!(directions(&acts_of(stage, &context())), [false, true]);
+        assert_eq!(directions(&acts_of(stage, &two)), [false, true]);
         let acts = acts_of(stage, &four);
         assert_eq!(directions(&acts), [false, true, true, false]);
         let between = acts
@@ -55,6 +58,47 @@ fn contacts_are_read_in_the_recipes_polarities() {
             .filter(|act| matches!(act, Act::ConvertSinceMark(_)))
             .count();
         assert_eq!(waits, 4, "a conversion of its own for each");
+    }
+}
+
+/// Returns the acts of a coarse release ramp on the closure of the operate ramp.
+fn acts_of_ramps(context: &Context) -> Vec<Act> {
+    let mut state = at_23_c();
+    state.board.armature = Armature::Operated;
+    state.enter(Stage::ReleaseCoarse, context)
+}
+
+#[test]
+fn alternating_closures_are_read_once_each_in_opposite_directions() {
+    let alternating = context();
+    assert!(alternating.alternates());
+    let rest = directions(&acts_of(Stage::NcContact, &alternating));
+    assert_eq!(rest, [true], "NC at rest");
+    let timed = directions(&acts_of(Stage::TimedOperate, &alternating));
+    assert_eq!(timed, [false], "timed NO");
+    let ramps = acts_of_ramps(&alternating);
+    assert_eq!(directions(&ramps), [true], "NO of the ramps");
+    let after = ramps.iter().skip_while(|it| **it != Act::Read(Read::Drop));
+    let off = after.into_iter().find_map(|act| match act {
+        Act::Board(outputs) => Some(outputs.contains(&(SourceOn, false))),
+        Act::Supply(_) => Some(false),
+        _ => None,
+    });
+    assert_eq!(off, Some(true), "the contact breaks without load");
+    let coil = acts_of(Stage::Coil, &alternating);
+    assert_eq!(directions(&coil).len(), 1, "the zero");
+    let two = with(|it| it.contact.polarities = Polarities::PlusMinus);
+    assert!(directions(&acts_of_ramps(&two)).is_empty());
+    assert!(directions(&acts_of(Stage::Coil, &two)).is_empty());
+}
+
+#[test]
+fn without_coarse_ramps_each_closure_is_read_in_both_directions() {
+    for strategy in [Strategy::Pulse, Strategy::Bisection] {
+        let searched = with(|it| it.release_voltage_v = strategy);
+        assert!(!searched.alternates());
+        let timed = directions(&acts_of(Stage::TimedOperate, &searched));
+        assert_eq!(timed, [false, true]);
     }
 }
 
@@ -87,21 +131,22 @@ fn after(context: Context, closures: usize, mohm: f64) -> Test {
     let per_v = context.calibration.contact_mohm_per_v.value;
     let mut test = Test::begin(context, MockRig::at_rest().now);
     test.stages.clear();
-    for parameter in [
-        Parameter::ContactResistanceNo,
-        Parameter::ContactResistanceNc,
-    ] {
-        for _ in 0..closures {
-            let budget = Budget::default().with("test", 0.05);
-            let reading = Reading {
-                value: mohm,
-                unit: Unit::Milliohm,
-                budget,
-            };
-            test.state.record.found::<Sample>(parameter, reading, []);
-        }
+    let mut found = |parameter, value, unit| {
+        let budget = Budget::default().with("test", 0.05);
+        let reading = Reading {
+            value,
+            unit,
+            budget,
+        };
+        test.state.record.found::<Sample>(parameter, reading, []);
+    };
+    found(Parameter::ContactResistanceNo, mohm, Unit::Milliohm);
+    found(Parameter::ContactResistanceNc, mohm, Unit::Milliohm);
+    for _ in 0..closures {
+        found(Parameter::OperateTime, 4.7, Unit::Millisecond);
     }
-    test.state.plan.nc_drops = vec![Volt(mohm / per_v); closures + 1];
+    let drops = vec![Drop::single(Volt(mohm / per_v), false, 0.003); closures + 1];
+    (test.state.plan.no, test.state.plan.nc) = (drops.clone(), drops);
     test
 }
 

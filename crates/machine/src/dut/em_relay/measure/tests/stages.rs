@@ -5,6 +5,7 @@ use super::super::{Ramp, Stage, coil, fine, operate, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, gates, scan, watched};
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::bins;
+use crate::dut::em_relay::contact::Drop;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Context, TestState};
 use crate::dut::em_relay::overshoot::{CoarseResults, OvershootModel};
@@ -216,13 +217,13 @@ fn a_low_coarse_release_counts_until_the_last_refresh() {
     assert!((coarse.0 - 0.11).abs() < 1e-9);
 }
 
-/// Readings of a timed stage: gates 0 and 1 in counts of 20 us, drops of both polarities.
+/// Readings of a timed stage: gates 0 and 1 in counts of 20 us, forward drop.
 fn timed(seen: bool, counts: [u32; 2]) -> Readings {
     Readings {
         seen: vec![seen],
         boards: vec![PULLED],
         gates: vec![gates([100, 200]), gates([100 + counts[0], 200 + counts[1]])],
-        drops: [0.9, -0.9].map(|v| drop_of(Quality::Good, v)).to_vec(),
+        drops: vec![drop_of(Quality::Good, 0.9)],
         ..Readings::default()
     }
 }
@@ -246,14 +247,13 @@ fn a_timed_operation_gives_time_bounce_and_contact() {
 #[test]
 fn a_timed_release_adds_an_nc_closure() {
     let mut state = at_23_c();
-    state.plan.drop_zero = Some(Volt(0.1));
-    state.plan.nc_drops = vec![Volt(1.2)];
+    state.plan.nc = vec![Drop::single(Volt(-1.1), true, 0.003)];
     timing::conclude_release(&context(), &timed(true, [145, 150]), &mut state);
     assert_eq!(ended(&state), None);
     let time = state.record.result(Parameter::ReleaseTime).unwrap().value;
     assert!((time - 2.9).abs() < 1e-9);
     let nc = state.record.result(Parameter::ContactResistanceNc).unwrap();
-    assert!((nc.value - 20.0).abs() < 1e-9, "mean of 24 and 16");
+    assert!((nc.value - 20.0).abs() < 1e-9, "mean of 22 and 18");
 }
 
 #[test]
@@ -288,7 +288,6 @@ fn a_closure_in_compliance_fails_by_contact() {
     timing::conclude_operate(&context(), &readings, &mut state);
     assert_ends(&state, bins::CONTACT, "NO contact");
     let mut state = at_23_c();
-    state.plan.drop_zero = Some(Volt(0.0));
     timing::conclude_release(&context(), &readings, &mut state);
     assert_ends(&state, bins::CONTACT, "NC contact");
 }
@@ -325,7 +324,6 @@ fn on_the_ramp() -> Context {
 /// Concludes a coarse ramp on a part whose operate time is this number of counts.
 fn coarse_after(context: &Context, counts: u32) -> (TestState, Option<Stage>) {
     let mut state = ramp_from(5.0, 6.0);
-    state.plan.drop_zero = Some(Volt(0.0));
     timing::conclude_operate(context, &timed(true, [counts, counts]), &mut state);
     timing::conclude_release(context, &timed(true, [145, 150]), &mut state);
     let readings = Readings {
