@@ -86,8 +86,8 @@ const SLOW: [Stage; 5] = [
 ];
 
 /// Longest remaining time of a ramp that the previous test of the part has left running: a ramp over a new interval
-/// takes 0.3 s.
-const CUT_OFF: Span = Span::ms(400);
+/// takes 0.45 s.
+const CUT_OFF: Span = Span::ms(550);
 
 /// A test under way.
 #[derive(Debug)]

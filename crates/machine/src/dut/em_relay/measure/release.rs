@@ -117,21 +117,32 @@ fn until_break(takes: Span) -> [Act; 4] {
     ]
 }
 
-pub(super) fn acts_coarse(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
+/// Ramps down until NO breaks. The closure of a coarse operate ramp right before it (`after_coarse`) carries the reversed
+/// source under `alternating`; a fine ramp before it is stopped.
+pub(super) fn acts_coarse(
+    context: &Context,
+    mut board: BoardState,
+    after_coarse: bool,
+) -> (Vec<Act>, BoardState) {
     let mut acts = Vec::new();
+    let operated = board.armature == Armature::Operated;
+    if operated && !after_coarse {
+        let (ramp, takes) = stopped_above(context, &mut board, Volt(0.0));
+        board.still_ramping = takes;
+        acts.push(ramp);
+    }
     if board.supply.coarse() != release_start(context) {
         let (ramp, takes) = board.supply.ramp_coarse(release_start(context));
         acts.extend([ramp, Act::Wait(takes)]);
     }
     let start = board.supply.coarse() + board.supply.fine();
-    let source = context.alternates() && board.armature == Armature::Operated;
+    let source = context.alternates() && operated && after_coarse;
     let (sealing, mut board) = seal(context, board, start, source);
     let (start, span) = (board.supply.total(), board.supply.coarse());
     acts.extend(sealing);
-    let read = if source {
-        drop_of_ramps(context).to_vec()
-    } else {
-        Vec::new()
+    let read = match source {
+        true => drop_of_ramps(context).to_vec(),
+        false => Vec::new(),
     };
     acts.extend(settled(SETTLES, &read));
     let (ramp, takes) = board.supply.ramp_coarse(Volt(0.0));

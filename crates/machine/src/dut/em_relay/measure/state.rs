@@ -65,7 +65,11 @@ impl TestState {
             }
             Stage::TimedOperate => timing::acts_operate(context, board),
             Stage::TimedRelease => timing::acts_release(context, board),
-            Stage::ReleaseCoarse => release::acts_coarse(context, board),
+            Stage::ReleaseCoarse => {
+                let operated = record.own.operate;
+                let after_coarse = operated.is_some_and(|ramp| ramp.fine.is_none());
+                release::acts_coarse(context, board, after_coarse)
+            }
             Stage::ReleaseFine(_) => {
                 release::acts_fine(context, board, interval(Direction::Falling))
             }

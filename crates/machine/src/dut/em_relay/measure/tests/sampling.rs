@@ -1,11 +1,12 @@
 //! Number of readings of coil and contacts that a recipe demands.
 
-use super::super::{Stage, Test};
+use super::super::{Ramp, Stage, Test};
 use super::{at_23_c, context, good, scan};
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::contact::Drop;
 use crate::dut::em_relay::measure::board::Armature;
 use crate::dut::em_relay::measure::{Context, coil};
+use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::points::DigitalOut::{SourceOn, SourceReverse};
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::recipe::Strategies;
@@ -65,6 +66,7 @@ fn contacts_are_read_in_the_recipes_polarities() {
 fn acts_of_ramps(context: &Context) -> Vec<Act> {
     let mut state = at_23_c();
     state.board.armature = Armature::Operated;
+    state.record.own.operate = Some(Ramp::coarse_only(CoarseResults::NONE));
     state.enter(Stage::ReleaseCoarse, context)
 }
 
@@ -87,6 +89,11 @@ fn alternating_closures_are_read_once_each_in_opposite_directions() {
     assert_eq!(off, Some(true), "the contact breaks without load");
     let coil = acts_of(Stage::Coil, &alternating);
     assert_eq!(directions(&coil).len(), 1, "the zero");
+    let mut state = at_23_c();
+    state.board.armature = Armature::Operated;
+    state.record.own.operate = Some(Ramp::fine_only(Volt(7.9)));
+    let after_fine = state.enter(Stage::ReleaseCoarse, &alternating);
+    assert!(directions(&after_fine).is_empty(), "closed without source");
     let two = with(|it| it.contact.polarities = Polarities::PlusMinus);
     assert!(directions(&acts_of_ramps(&two)).is_empty());
     assert!(directions(&acts_of(Stage::Coil, &two)).is_empty());
