@@ -10,8 +10,9 @@ use crate::scpi::relay::{Heat, Kind};
 
 /// Temperature coefficient of the threshold voltage, volts per kelvin.
 const KNEE_V_PER_K: f64 = -1.5e-3;
-/// Number of points of the computed cycle of the on-state.
-const POINTS: u32 = 720;
+/// Number of points of the computed cycle of the on-state. The output jumps when it fires, between two of them; at 720
+/// points the distortion of a part that fires at 4 V would err by up to 2 %.
+const POINTS: u32 = 36_000;
 
 /// One computed cycle of the conducting output at the rated current.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -6,7 +6,7 @@ use super::ac_plan::{
 };
 use super::accuracy::{COLD, WARMED};
 use super::measure::line::leakage::Leak;
-use super::measure::line::looped::OnState;
+use super::measure::line::looped::{Distorted, OnState};
 use super::measure::line::references::REFERENCE_OHM;
 use super::measure::line::train::Walk;
 use super::plan::Plan;
@@ -45,9 +45,6 @@ const WANDERS_S: f64 = 5.0;
 /// Share of the capacitive current that seems to be in phase with the voltage within the record of a leakage, because
 /// the mains deviates so; standard deviation.
 const TURNS: f64 = 1.4e-4;
-
-/// Change of the distortion by deviations of the mains, as a share of the distortion, standard deviation.
-const WAITS: f64 = 0.024;
 
 /// Part of a leakage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -241,11 +238,26 @@ pub fn line_drift(ac: &AcPlan, on: &OnState) -> Budget {
         .with_random("noise", WARMED * on.noise_v * 1e3)
 }
 
-/// Returns the budget of a distortion, mV: that of a drop of the same size, which does not depend on the current. The
-/// mains, whose harmonics and amplitude differ from the nominal ones, moves the instants at which the output waits.
+/// Returns the budget of a distortion, mV: that of a drop of the same size, which does not depend on the current, and the
+/// terms of the wait. The coarser channel shows its voltage, the samples its end, and the fitted source, with higher
+/// harmonics that the fit does not know, its length.
 pub fn distortion(plan: &Plan, ac: &AcPlan, on: &OnState) -> Budget {
-    let drop = line_drop(plan, ac, on, (on.distortion_v, 0.0));
-    scaled(&drop, 1e3).with("mains", WAITS * on.distortion_v * 1e3)
+    let Distorted {
+        rms_v,
+        fires_v,
+        waits_v2,
+        u_v2,
+    } = on.distortion;
+    let drop = line_drop(plan, ac, on, (rms_v, 0.0));
+    let of_wait_v = waits_v2 / rms_v;
+    let gain = gain(ac, on.referenced.is_some());
+    let linearity = bent(ac.looped().divided_v, fires_v / DIVIDER);
+    let budget = drop
+        .with_bounds("gain of the wait", gain * of_wait_v)
+        .with_bounds("linearity of the wait", linearity * of_wait_v)
+        .with_bounds("curve", CURVE * of_wait_v / 2.0)
+        .with_random("sample interval", u_v2 / (2.0 * rms_v));
+    scaled(&budget, 1e3)
 }
 
 /// Returns a budget in another unit.

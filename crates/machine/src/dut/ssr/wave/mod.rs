@@ -9,9 +9,11 @@
 //! | the instant at which the voltage jumps from the mains to the drop | [`turn`] |
 //! | resistive and capacitive part of a current | [`split`] |
 //! | drop against current | [`drop_line`] |
+//! | distortion of the voltage at a conducting output | [`distortion`] |
 //! | drop while a current warms the part | [`warming`] |
 //! | the level of a staircase at which the output turns on or off | [`staircase`] |
 
+pub mod distortion;
 pub mod drop_line;
 pub mod least_squares;
 pub mod mains;

@@ -8,13 +8,14 @@ use super::{STORED, close, leave, supply};
 use crate::dut::Reason;
 use crate::dut::ssr::Finding;
 use crate::dut::ssr::ac_accuracy as accuracy;
-use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LOOP_SHUNT_OHM};
+use crate::dut::ssr::ac_plan::{AcPlan, DIVIDER, LOOP_OHM, LOOP_SHUNT_OHM};
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
 use crate::dut::ssr::program::{DIVIDED_CHANNEL, OUTPUT_CHANNEL, SHUNT_CHANNEL};
 use crate::dut::ssr::references::{Doubt, References};
 use crate::dut::ssr::wave::Channel;
+use crate::dut::ssr::wave::distortion::Conducting;
 use crate::dut::ssr::wave::drop_line::{self, DropLine};
 use crate::dut::ssr::wave::mains::Mains;
 use crate::dut::ssr::wave::{jumps_u, split, warming};
@@ -29,6 +30,8 @@ const LEAST: f64 = 0.3;
 const DRIFT_S: [f64; 2] = [0.01, 0.2];
 /// Share of its range up to which the channel of the drop follows the output.
 const FOLLOWED: f64 = 0.93;
+/// Share of the peak of the rated current below which the output waits for its voltage.
+const WAITS: f64 = 0.02;
 /// Least share of the peak of the current that both polarities reach in a whole wave.
 const HALF: f64 = 0.2;
 
@@ -52,6 +55,7 @@ pub fn acts(state: &mut State, plan: &Plan, ac: &AcPlan, points: &Points) -> Vec
 }
 
 /// The channels of a record in the loop.
+#[derive(Clone, Copy)]
 pub struct Drops<'a> {
     /// Voltage of the output over its whole range, V.
     whole: Channel<'a>,
@@ -62,6 +66,8 @@ pub struct Drops<'a> {
     ampere: Channel<'a>,
     /// The fitted sine of the current.
     pub current: Mains,
+    /// The fitted sine of the source, V.
+    source: Mains,
     rated_peak_a: f64,
     referenced: Option<Doubt>,
 }
@@ -80,7 +86,7 @@ pub struct OnState {
     /// Mean of the voltage, V, and its standard uncertainty from the samples.
     pub offset_v: (f64, f64),
     /// Difference of the output voltage from a sine, rms, V.
-    pub distortion_v: f64,
+    pub distortion: Distorted,
     /// Difference of the charges of both half cycles over their sum, and its standard uncertainty from the samples.
     pub unequal: (f64, f64),
     /// Number of whole periods from which `offset_v` and `unequal` are computed.
@@ -93,6 +99,19 @@ pub struct OnState {
     pub noise_v: f64,
     /// Noise of the references that have corrected both channels; `None` without them.
     pub referenced: Option<Doubt>,
+}
+
+/// Difference of the output voltage from its fundamental, and what its budget needs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distorted {
+    /// Rms of the difference of the cold part at the rated current from a sine, V.
+    pub rms_v: f64,
+    /// Voltage up to which the output waits in each half cycle, V.
+    pub fires_v: f64,
+    /// Mean square of the voltage while the output waits, over whole periods, V².
+    pub waits_v2: f64,
+    /// Standard uncertainty of the mean square of the voltage from the samples, V².
+    pub u_v2: f64,
 }
 
 impl OnState {
@@ -126,7 +145,15 @@ impl<'a> Drops<'a> {
         let is_whole = volts.is_beside(&ampere)
             && volts.is_beside(&whole)
             && current.offset.abs() < HALF * current.amplitude();
-        is_whole.then_some(Self {
+        if !is_whole {
+            return None;
+        }
+        let source = (from..ampere.len()).step_by(4).map(|it| {
+            let load_v = LOOP_OHM * ampere.at(it);
+            (ampere.time(it), whole.at(it) + load_v)
+        });
+        Some(Self {
+            source: Mains::fit(source, ac.mains_hz)?.centred(),
             whole,
             volts,
             ampere,
@@ -159,6 +186,12 @@ impl<'a> Drops<'a> {
         Some(f64::midpoint(rms(&plus).powi(2), rms(&minus).powi(2)).sqrt())
     }
 
+    /// Returns the drop without current, V: the mean of both polarities.
+    fn threshold_v(&self, between_s: (f64, f64)) -> Option<f64> {
+        let (plus, minus) = (self.line(1.0, between_s)?, self.line(-1.0, between_s)?);
+        Some(f64::midpoint(plus.threshold_v, minus.threshold_v))
+    }
+
     /// Returns whole periods, at least two, that end before the end of the record and begin after the first period.
     fn whole(&self) -> Option<(f64, f64)> {
         let last_s = self.volts.time(self.volts.len().checked_sub(1)?);
@@ -171,6 +204,7 @@ impl<'a> Drops<'a> {
     /// follows the voltage up to `most_v`.
     pub fn read(&self, most_v: f64) -> Option<OnState> {
         let whole = self.whole()?;
+        let matched = self.matched(whole, most_v)?;
         let (plus, minus) = (self.line(1.0, whole)?, self.line(-1.0, whole)?);
         let (peaks, each_rms) = (self.periods(Self::peak_v)?, self.periods(Self::rms_v)?);
         let (peak, rms) = (warming::course(&peaks)?, warming::course(&each_rms)?);
@@ -183,17 +217,27 @@ impl<'a> Drops<'a> {
         let (unequal, mean_a) = self.unequal(whole);
         let (peak_a, periods) = (self.rated_peak_a, (whole.1 - whole.0) * self.current.hz);
         let lead = lead_s * self.current.hz;
+        let warm = Conducting {
+            threshold_v: f64::midpoint(plus.threshold_v, minus.threshold_v),
+            ohm: f64::midpoint(plus.ohm, minus.ohm),
+            fires_v: matched.fires_v(whole),
+            load_ohm: LOOP_OHM,
+        };
+        let cold = Conducting {
+            threshold_v: warming::course(&self.periods(Self::threshold_v)?)?.at(-lead),
+            ..warm
+        };
         Some(OnState {
             peak_v: peak_v(0.0),
             rms_v: rms.at(-lead),
             first_v: [peak, rms].map(|it| it.at(-lead) - it.at(0.0)),
             drift_v: peak_v(DRIFT_S[1]) - peak_v(DRIFT_S[0]),
             offset_v: (self.mean_v(whole, most_v), jumps_u(&clipped)),
-            distortion_v: self.distortion_v(whole, most_v)?,
+            distortion: matched.distortion(whole, most_v, [&cold, &warm])?,
             unequal: (unequal, jumps_u(&ampere) / mean_a),
             periods,
             mean_a,
-            ohm: f64::midpoint(plus.ohm, minus.ohm),
+            ohm: warm.ohm,
             noise_v: plus.u_at(peak_a).hypot(minus.u_at(peak_a)) / 2.0 * periods.sqrt(),
             referenced: self.referenced,
         })
@@ -235,20 +279,71 @@ impl<'a> Drops<'a> {
         (unequal, f64::midpoint(one.1, other.1))
     }
 
-    /// Returns the rms of the voltage at the output less its fundamental and its mean over whole periods, V. It reads
-    /// the finer channel where that follows the output, because noise counts as distortion.
-    fn distortion_v(&self, (from_s, to_s): (f64, f64), most_v: f64) -> Option<f64> {
+    /// Returns the difference of the voltage at the output from a sine, over whole periods. It reads the finer channel
+    /// where that follows the output, because noise counts as distortion.
+    ///
+    /// The record shows a warm part at a source that is no sine and has another amplitude than the rated current needs.
+    /// The model of the output shows what both change.
+    fn distortion(
+        &self,
+        (from_s, to_s): (f64, f64),
+        most_v: f64,
+        [cold, warm]: [&Conducting; 2],
+    ) -> Option<Distorted> {
         let (from, to) = (self.volts.index(from_s), self.volts.index(to_s));
         let samples = (from..to).map(|it| (self.volts.time(it), self.at(it, most_v)));
         let fitted = split::phasor(samples.clone(), self.current.hz)?;
         let [sine, cosine] = fitted.of;
         let squares: f64 = samples
+            .clone()
             .map(|(time_s, volts)| {
                 let (sin, cos) = (std::f64::consts::TAU * self.current.hz * time_s).sin_cos();
                 (volts - fitted.mean - sine * sin - cosine * cos).powi(2)
             })
             .sum();
-        Some((squares / (to - from) as f64).sqrt())
+        let count = (to - from) as f64;
+        let each_v2: Vec<f64> = samples.map(|(_, volts)| volts * volts).collect();
+        let waits = (from..to).filter(|it| self.ampere.at(*it).abs() < WAITS * self.rated_peak_a);
+        let waits_v2 = waits.map(|it| self.at(it, most_v).powi(2)).sum::<f64>() / count;
+        let zero_s = self.source.zero_after(from_s);
+        let seen = |turns: f64| self.source.at(zero_s + turns / self.source.hz);
+        let changed_v = cold.distortion_v(cold.sine(self.rated_peak_a)) - warm.distortion_v(seen);
+        Some(Distorted {
+            rms_v: (squares / count).sqrt() + changed_v,
+            fires_v: warm.fires_v,
+            waits_v2,
+            u_v2: jumps_u(&each_v2),
+        })
+    }
+
+    /// Returns the voltage at which the output fires in each half cycle, V: the mean over half cycles of the greatest
+    /// sample, and of the mains half an interval later.
+    fn fires_v(&self, (from_s, to_s): (f64, f64)) -> f64 {
+        let half_s = self.source.half_s();
+        let zero_s = self.source.zero_after(from_s);
+        let count = ((to_s - zero_s) / half_s).floor().max(1.0);
+        let greatest = (0..count as u32).map(|it| {
+            let begins_s = zero_s + f64::from(it) * half_s;
+            let (from, to) = (
+                self.whole.index(begins_s),
+                self.whole.index(begins_s + half_s / 2.0),
+            );
+            (from..to).fold(0.0, |most, it| f64::max(most, self.whole.at(it).abs()))
+        });
+        let later_v = self.source.slope(zero_s).abs() * self.whole.step_s / 2.0;
+        greatest.sum::<f64>() / count + later_v
+    }
+
+    /// Returns the record with the coarser channel of the output free of its offset, which the finer one shows.
+    fn matched(&self, (from_s, to_s): (f64, f64), most_v: f64) -> Option<Self> {
+        let both = (self.volts.index(from_s)..self.volts.index(to_s))
+            .filter(|it| self.volts.at(*it).abs() < most_v);
+        let apart = both.map(|it| self.whole.at(it) - self.volts.at(it));
+        let (sum, count) = apart.fold((0.0, 0_u32), |(sum, count), it| (sum + it, count + 1));
+        (count > 0).then(|| Self {
+            whole: self.whole.less(sum / f64::from(count)),
+            ..*self
+        })
     }
 
     /// Returns the voltage of the output, V: from the channel of the drop below `most_v`, above it from the coarser
@@ -340,7 +435,7 @@ pub fn conclude(
         (P::DcOffset, offset_mv, Millivolt, offset),
         (
             P::Distortion,
-            on.distortion_v * 1e3,
+            on.distortion.rms_v * 1e3,
             Millivolt,
             accuracy::distortion(plan, ac, &on),
         ),
