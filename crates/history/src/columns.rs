@@ -106,6 +106,19 @@ pub fn external_header(keys: &[External]) -> impl Iterator<Item = String> + '_ {
     keys.iter().flat_map(of)
 }
 
+/// Returns the names of the same columns in the language `lang`.
+pub fn external_header_in(lang: Lang, keys: &[External]) -> impl Iterator<Item = String> + '_ {
+    let verdict = lang.name("column", "verdict");
+    keys.iter().flat_map(move |key| {
+        let name = parameter(lang, key.key());
+        let [doubt, judged] = [
+            format!("U {name}"),
+            format!("{verdict}{}{name}", lang.colon()),
+        ];
+        [name, doubt, judged]
+    })
+}
+
 /// Returns the cells of a part in the order of [`external_header`].
 pub fn external<'a>(part: &'a Part, keys: &'a [External]) -> impl Iterator<Item = Cell<'a>> {
     keys.iter().flat_map(|key| {
@@ -116,6 +129,21 @@ pub fn external<'a>(part: &'a Part, keys: &'a [External]) -> impl Iterator<Item 
             number(found.and_then(|it| it.uncertainty)),
             found.map_or(Cell::Empty, |it| text(it.verdict.name())),
         ]
+    })
+}
+
+/// Returns the same cells with verdicts in words of the language `lang`.
+pub fn external_in<'a>(
+    part: &'a Part,
+    keys: &'a [External],
+    lang: Lang,
+) -> impl Iterator<Item = Cell<'a>> {
+    external(part, keys).map(move |cell| match cell {
+        Cell::Text(code) => {
+            let name = lang.name("paper_verdict", &code).to_owned();
+            Cell::Text(Cow::Owned(name))
+        }
+        figure => figure,
     })
 }
 

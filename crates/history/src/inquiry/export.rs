@@ -60,7 +60,7 @@ pub fn spreadsheet(
     paper: &Paper,
     mut each: impl FnMut(),
 ) -> Result<Workbook> {
-    let mut sheet = Sheet::new(paper, parameters)?;
+    let mut sheet = Sheet::new(paper, parameters, &external_keys(archive, filter)?)?;
     archive.each(filter, |part| {
         each();
         sheet.part(&part)

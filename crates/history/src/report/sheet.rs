@@ -10,6 +10,7 @@ use super::sheet_cells::{Formats, written};
 use super::words::{doubt_decimals, parameter};
 use crate::Part;
 use crate::columns;
+use machine::dut::External;
 use quality::capability::D2_PAIR;
 use quality::ordered::Histogram;
 use quality::tally::Tally;
@@ -62,6 +63,7 @@ pub struct Sheet {
     paper: Paper,
     formats: Formats,
     keys: Vec<String>,
+    external: Vec<External>,
     figures: Vec<Figures>,
     bins: BTreeMap<String, u64>,
     sheets: usize,
@@ -69,8 +71,13 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Makes a spreadsheet with columns for these parameters, headed SIMULATION for simulated parts.
-    pub fn new(paper: &Paper, parameters: &[String]) -> Result<Self, XlsxError> {
+    /// Makes a spreadsheet with columns for these parameters and results from outside of the rig, headed SIMULATION for
+    /// simulated parts.
+    pub fn new(
+        paper: &Paper,
+        parameters: &[String],
+        external: &[External],
+    ) -> Result<Self, XlsxError> {
         let mut workbook = Workbook::new();
         let summary = workbook.add_worksheet();
         summary.set_name(paper.language.text("paper-summary"))?;
@@ -85,6 +92,7 @@ impl Sheet {
             paper: paper.clone(),
             formats: Formats::new(),
             keys: parameters.to_vec(),
+            external: external.to_vec(),
             figures: vec![Figures::default(); parameters.len()],
             bins: BTreeMap::new(),
             sheets: 0,
@@ -115,6 +123,10 @@ impl Sheet {
                 self.formats.number(to, (row, column), value, decimals)?;
             }
             value.into_iter().for_each(|value| figures.add(value));
+        }
+        let external = columns::external_in(part, &self.external, self.paper.language);
+        for (column, cell) in (first + 2 * count..).zip(external) {
+            written(to, (row, column), &cell, (zone, &self.formats))?;
         }
         let bin = part.bin.as_deref().unwrap_or_default();
         *self.bins.entry(bin.to_owned()).or_default() += 1;
@@ -182,7 +194,10 @@ impl Sheet {
         head(to, &self.paper);
         to.set_freeze_panes(1, 0)?;
         to.set_column_width(0, 19)?;
-        for (column, name) in (0..).zip(columns::header_in(self.paper.language, &self.keys)) {
+        let language = self.paper.language;
+        let external = columns::external_header_in(language, &self.external);
+        let names = columns::header_in(language, &self.keys).into_iter();
+        for (column, name) in (0..).zip(names.chain(external)) {
             to.write_string_with_format(0, column, name, &bold)?;
         }
         self.row = 1;

@@ -2,8 +2,11 @@
 
 use super::*;
 use crate::inquiry::{export, paper};
-use crate::report::Lang;
+use crate::report::{Lang, Paper, parameter};
+use calamine::{Reader, Xlsx};
+use jiff::tz::TimeZone;
 use machine::dut::External;
+use std::io::Cursor;
 
 const RECIPE: &str = "name = \"ssr\"\n[external]\ndv_dt_v_us = { low = 500 }\nr_iso_ohm = { low = 1e9 }\n\
     [decision]\nrule = \"guard_band\"\nslow_repeats = 3\n";
@@ -359,6 +362,26 @@ fn an_export_carries_results_and_can_be_imported() {
             .ends_with(&["300", "20", "fail", "", "", ""].map(str::to_owned))
     );
     assert_eq!(parse_records(&records, &[], &parameters).unwrap().len(), 5);
+    let paper = Paper {
+        language: Lang::En,
+        zone: TimeZone::UTC,
+        made: String::new(),
+        simulated: false,
+    };
+    let made = export::spreadsheet(&archive, &of_lot, &parameters, &paper, || {});
+    let bytes = made.unwrap().save_to_buffer().unwrap();
+    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
+    let parts = book.worksheet_range("Parts").unwrap();
+    let ends = |row: u32| -> Vec<String> {
+        let cells = (parts.width() as u32 - 6..).map_while(|it| parts.get_value((row, it)));
+        cells.map(ToString::to_string).collect()
+    };
+    let [dv_dt, r_iso] = ["dv_dt_v_us", "r_iso_ohm"].map(|it| parameter(Lang::En, it));
+    let header =
+        [&dv_dt, &r_iso].map(|it| [it.clone(), format!("U {it}"), format!("Verdict: {it}")]);
+    assert_eq!(ends(0), header.concat());
+    assert_eq!(ends(1), ["", "", "", "40000000000", "4000000000", "pass"]);
+    assert_eq!(ends(2), ["300", "20", "fail", "", "", ""]);
 }
 
 #[test]

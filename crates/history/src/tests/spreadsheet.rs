@@ -34,7 +34,7 @@ fn paper(simulated: bool) -> Paper {
 #[test]
 fn a_spreadsheet_of_simulated_parts_says_so() {
     for simulated in [false, true] {
-        let sheet = Sheet::new(&paper(simulated), &[]).unwrap();
+        let sheet = Sheet::new(&paper(simulated), &[], &[]).unwrap();
         let mut book = sheet.finish(&SheetFacts::default()).unwrap();
         let bytes = book.save_to_buffer().unwrap();
         let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
@@ -81,7 +81,7 @@ fn a_spreadsheet_of_a_lot_has_its_answers() {
 #[test]
 fn a_spreadsheet_reads_back_with_charts_without_formula() {
     let keys = ["operate_voltage_v".to_owned()];
-    let mut sheet = Sheet::new(&paper(false), &keys).unwrap();
+    let mut sheet = Sheet::new(&paper(false), &keys, &[]).unwrap();
     for _ in 0..3 {
         sheet.part(&part(7.704_22)).unwrap();
     }
