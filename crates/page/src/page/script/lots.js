@@ -147,6 +147,7 @@ at("decide").addEventListener("submit", (event) => {
 
 function showExternal({standing, results}) {
   at("x_standing").textContent = externalText(standing);
+  at("x_standing").className = standing.acceptable ? "" : "trouble";
   at("x_results").replaceChildren(...results.map(externalRow));
 }
 
