@@ -109,6 +109,15 @@ impl<T> TestRecord<T> {
         *self.stages.entry(what).or_default() += time;
     }
 
+    /// Adds the times of another test of the part.
+    pub fn add_time(&mut self, other: &Self) {
+        self.spent.add(other.spent);
+        other
+            .stages
+            .iter()
+            .for_each(|(what, time)| self.took(what, *time));
+    }
+
     /// Adds one result of a stage, with the replies that it comes from.
     ///
     /// # Panics

@@ -58,6 +58,8 @@ pub enum Finding {
     LoopDead,
     /// The socket is shorted without a part's output.
     SocketShorted,
+    /// The first test of the part has failed it, the second one has passed it.
+    Unsteady,
     /// A reference of the fixture reads more than a tenth off its value.
     WrongReference,
     /// An instrument has delivered other values than its programs return; detail: the instrument.
@@ -66,7 +68,7 @@ pub enum Finding {
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::PinOpen,
         Self::ProbeChainOpen,
         Self::Turned,
@@ -91,6 +93,7 @@ impl Finding {
         Self::LineDead,
         Self::LoopDead,
         Self::SocketShorted,
+        Self::Unsteady,
         Self::WrongReference,
         Self::NotDelivered,
     ];
@@ -138,6 +141,7 @@ impl Finding {
             Self::LineDead => Entry::void("ssr_line_dead"),
             Self::LoopDead => Entry::void("ssr_loop_dead"),
             Self::SocketShorted => Entry::void("ssr_socket_shorted"),
+            Self::Unsteady => Entry::void("ssr_unsteady"),
             Self::WrongReference => Entry::void("ssr_wrong_reference"),
             Self::NotDelivered => Entry::void("ssr_not_delivered"),
         }

@@ -5,6 +5,7 @@ use super::*;
 use crate::dut::Procedure;
 use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut};
 use crate::dut::ssr::tests::line_bench::{LineBench, Part, RANDOM, ZERO_CROSS, good, recipe};
+use crate::dut::ssr::wave::distortion::Conducting;
 
 fn tested(text: &str, changes: &[(&str, &str)], part: Part) -> (LineBench, Procedure) {
     let recipe = recipe(text, changes);
@@ -172,6 +173,41 @@ fn a_loop_that_opens_in_its_record_fails_no_part() {
 }
 
 #[test]
+fn a_break_that_heals_fails_no_part() {
+    /// Records on the line of a later part.
+    const RECORDS: usize = 5;
+    for (zero_cross, text) in [(true, ZERO_CROSS), (false, RANDOM)] {
+        let part = changed(|it| it.zero_cross = zero_cross);
+        let mut bench = LineBench::with(part, &recipe(text, &[]));
+        assert_eq!(bench.tested(false).verdict(), Verdict::Pass);
+        let check = |bench: &mut LineBench, what: &str| {
+            let verdict = bench.tested(false).verdict();
+            let is_known = matches!(verdict, Verdict::Pass | Verdict::Void(_));
+            assert!(is_known, "{what}: {verdict:?}");
+        };
+        for lasts_ms in [1.0, 2.0, 5.0, 20.0, 50.0] {
+            bench.part.heals_after_s = lasts_ms / 1e3;
+            for at_ms in (0..210).step_by(29) {
+                bench.part.loop_opens_s = f64::from(at_ms) / 1e3;
+                check(&mut bench, &format!("loop, {lasts_ms} ms at {at_ms} ms"));
+            }
+            bench.part.loop_opens_s = f64::INFINITY;
+            for (record, at_ms) in
+                (0..RECORDS).flat_map(|it| (0..190).step_by(53).map(move |at| (it, at)))
+            {
+                bench.part.dead_from = bench.line_records + record;
+                bench.part.dies_s = f64::from(at_ms) / 1e3;
+                check(
+                    &mut bench,
+                    &format!("line, {lasts_ms} ms at {at_ms} ms of record {record}"),
+                );
+                bench.part.dead_from = usize::MAX;
+            }
+        }
+    }
+}
+
+#[test]
 fn a_part_that_misses_a_polarity_in_the_loop_fails() {
     for dead in [1.0, -1.0] {
         let mut bench = LineBench::with(good(), &recipe(ZERO_CROSS, &[]));
@@ -271,5 +307,24 @@ fn only_the_first_parts_are_searched() {
         let found = test.record().result(Parameter::TurnOnVoltage);
         assert_eq!(found.is_some(), number < 3, "part {number}");
         assert_eq!(test.verdict(), Verdict::Pass);
+    }
+}
+
+#[test]
+fn the_distortion_is_that_of_a_cold_part_at_a_sine() {
+    for again_v in [2.0, 4.2, 6.0] {
+        let part = changed(|it| it.again_v = again_v);
+        let truth = Conducting {
+            threshold_v: part.threshold_v + part.rise_v,
+            ohm: part.ohm,
+            fires_v: again_v,
+            load_ohm: 4.7,
+        };
+        let truth_v = truth.distortion_v(truth.sine(5.0 * std::f64::consts::SQRT_2));
+        let (_, test) = tested(ZERO_CROSS, &[], part);
+        let found = test.record().result(Parameter::Distortion);
+        let reading = found.unwrap_or_else(|| panic!("{again_v} V: {:?}", ended(&test)));
+        let error = (reading.value - 1e3 * truth_v).abs();
+        assert!(error < 1.1 * reading.expanded(), "{reading:?}, {truth_v} V");
     }
 }

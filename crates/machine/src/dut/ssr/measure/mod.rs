@@ -6,7 +6,8 @@
 //! ```
 //! A finding ends the measuring stages; a figure outside its limit does not. A finding about the output fails the part
 //! only after [`known`] states of the fixture have shown no other cause. Every test ends with the discharge, whatever has
-//! ended it. When a job fails, the fixture disconnects the sources first, by modules whose watchdog needs
+//! ended it. A part that has failed is tested once more, from the pins to the discharge: a contact that opens for some
+//! milliseconds does not fail it, because the second test contradicts the first. When a job fails, the fixture disconnects the sources first, by modules whose watchdog needs
 //! no instrument, and the instruments follow. A socket that is not proven to be below 30 V is trouble of the rig.
 //!
 //! A result inside the guard band, and in a thorough test every result, is measured again at once, `slow_repeats` times.
@@ -31,6 +32,7 @@ mod timing;
 pub use stage::{Label, Stage};
 pub use state::State;
 
+use super::Finding;
 use super::device::Device;
 use super::parameter::Parameter;
 use super::plan::OutputPlan;
@@ -61,6 +63,10 @@ pub struct Test {
     stage: Stage,
     stages: VecDeque<Stage>,
     runner: Runner,
+    /// State at the end of a first test that has failed the part, while the second test is under way.
+    failed: Option<Box<State>>,
+    /// True once the part is tested a second time.
+    is_second: bool,
     thorough: bool,
     number: u8,
     /// Repetitions left for the stage under way; none before its first result.
@@ -68,30 +74,38 @@ pub struct Test {
     began: RigTime,
 }
 
+/// Returns the state at the begin of a test, and its stages: the probes are up.
+fn planned(device: &Device, now: RigTime) -> (State, VecDeque<Stage>) {
+    let references = device.fixture.references.filter(|it| it.hold(now));
+    let open = device.fixture.open.filter(|it| it.holds(now));
+    let is_referenced = match device.plan.output {
+        OutputPlan::Dc(_) => open.is_some(),
+        OutputPlan::Ac(_) => references.is_some(),
+    };
+    let is_searched = device.judged < device.plan.searched;
+    let stages = stage::order(&device.plan, is_referenced, is_searched);
+    let mut stages = VecDeque::from(stages);
+    stages.extend([Stage::SourcesOff, Stage::Discharge]);
+    let state = State {
+        learned: device.learned,
+        references,
+        open,
+        is_no_sample: device.plan.sampling.is_some_and(|it| device.judged >= it),
+        ..State::default()
+    };
+    (state, stages)
+}
+
 impl Test {
     /// Begins with the pins; the probes are up.
     pub fn begin(device: Device, order: &TestOrder, now: RigTime) -> Self {
-        let references = device.fixture.references.filter(|it| it.hold(now));
-        let open = device.fixture.open.filter(|it| it.holds(now));
-        let is_referenced = match device.plan.output {
-            OutputPlan::Dc(_) => open.is_some(),
-            OutputPlan::Ac(_) => references.is_some(),
-        };
-        let is_searched = device.judged < device.plan.searched;
-        let stages = stage::order(&device.plan, is_referenced, is_searched);
-        let mut stages = VecDeque::from(stages);
-        stages.extend([Stage::SourcesOff, Stage::Discharge]);
-        let mut state = State {
-            learned: device.learned,
-            references,
-            open,
-            is_no_sample: device.plan.sampling.is_some_and(|it| device.judged >= it),
-            ..State::default()
-        };
+        let (mut state, mut stages) = planned(&device, now);
         let stage = stages.pop_front().unwrap_or(Stage::Discharge);
         let acts = state.acts(stage, &device.plan, &device.points);
         Self {
             runner: Runner::new(acts, now),
+            failed: None,
+            is_second: false,
             device,
             state,
             stage,
@@ -100,6 +114,25 @@ impl Test {
             number: order.number,
             repeats_left: None,
             began: now,
+        }
+    }
+
+    /// Decides after the last stage: begins a second test of a failed part, or compares both tests. The part fails when
+    /// both fail it; the first one counts.
+    fn compare(&mut self, now: RigTime) {
+        let fails = matches!(self.verdict(), Verdict::Fail(_));
+        if let Some(mut failed) = self.failed.take() {
+            if fails {
+                failed.record.add_time(&self.state.record);
+                self.state = *failed;
+            } else if self.verdict() == Verdict::Pass {
+                self.state.record.stop(Finding::Unsteady);
+            }
+        } else if fails && !self.is_second {
+            self.is_second = true;
+            let (state, stages) = planned(&self.device, now);
+            self.failed = Some(Box::new(std::mem::replace(&mut self.state, state)));
+            self.stages = stages;
         }
     }
 
@@ -227,6 +260,9 @@ impl TestProcedure for Test {
                 waiting @ (RunnerState::Job(_) | RunnerState::Busy | RunnerState::Wait(_)) => {
                     return Progress::Running(waiting);
                 }
+            }
+            if self.stages.is_empty() {
+                self.compare(now);
             }
             let Some(stage) = self.stages.pop_front() else {
                 return Progress::Judged;

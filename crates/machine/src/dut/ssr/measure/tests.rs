@@ -362,8 +362,8 @@ fn a_finding_skips_every_later_measurement() {
     let mut bench = Bench::with(changed(|it| it.is_shorted = true));
     bench.tested(recipe(&[]), false);
     let queries = bench.log.iter().filter(|it| it.starts_with("query"));
-    // At the beginning and at the end.
-    assert_eq!(queries.collect::<Vec<_>>(), ["query off off"; 2]);
+    // At the beginning and at the end of both tests.
+    assert_eq!(queries.collect::<Vec<_>>(), ["query off off"; 4]);
 }
 
 #[test]
@@ -385,6 +385,19 @@ fn a_short_in_the_socket_fails_no_part() {
     let test = tested(changed(|it| it.is_socket_shorted = true));
     let why = Stop::Void(Finding::SocketShorted.into());
     assert_eq!(test.why_stopped(), Some(&why));
+}
+
+#[test]
+fn a_lead_that_breaks_and_heals_fails_no_part() {
+    for lasts in [1, 3, 10] {
+        for jobs in 0..150 {
+            let mut bench = Bench::with(good());
+            (bench.lead_opens_after, bench.lead_heals_after) = (jobs, jobs + lasts);
+            let verdict = bench.tested(recipe(&[]), false).verdict();
+            let is_known = matches!(verdict, Verdict::Pass | Verdict::Void(_));
+            assert!(is_known, "{lasts} jobs after {jobs}: {verdict:?}");
+        }
+    }
 }
 
 #[test]

@@ -180,6 +180,8 @@ pub struct Bench {
     pub log: Vec<String>,
     /// Number of jobs after which the lead of the source at the output breaks, and (the next field) of those so far.
     pub lead_opens_after: usize,
+    /// Number of jobs after which the lead is whole again.
+    pub lead_heals_after: usize,
     jobs: usize,
     wiring: Arc<Wiring>,
     image: Image,
@@ -215,6 +217,7 @@ impl Bench {
             rounds: 0,
             log: Vec::new(),
             lead_opens_after: usize::MAX,
+            lead_heals_after: usize::MAX,
             jobs: 0,
             on: BTreeSet::new(),
             is_lit: false,
@@ -279,6 +282,8 @@ impl Bench {
                     };
                 }
                 self.check_cold(&before);
+                // The part cools down before it is tested again.
+                self.is_heated &= !self.on.contains(&DigitalOut::KelvinTest);
                 let on: Vec<&str> = self.on.iter().map(|it| it.name()).collect();
                 self.log.push(format!("set {}", on.join(" ")));
                 JobDone::new(self.now, None)

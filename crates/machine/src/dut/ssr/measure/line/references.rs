@@ -164,7 +164,16 @@ fn clamped(
     else {
         return Err(NotDelivered(Device::Digitizer));
     };
-    let (level_v, shown) = (ac.reference_v(), &mut state.shown);
+    let level_v = ac.reference_v();
+    let at_channel = [level_v / DIVIDER, level_v];
+    if !all
+        .iter()
+        .zip(at_channel)
+        .all(|(it, level_v)| is_steady(it, level_v))
+    {
+        return Ok(false);
+    }
+    let shown = &mut state.shown;
     if reference == Reference::Zero {
         (shown.zero_v, shown.shunt_zero_v) = (clamped_v, shunt_v);
         shown.divided_zero_v = divided_v;
@@ -175,6 +184,17 @@ fn clamped(
     shown.divided_gain = (divided_v - shown.divided_zero_v) * DIVIDER / level_v;
     let is_near = |gain: f64| (gain - 1.0).abs() < NEAR;
     Ok(is_near(shown.gain) && is_near(shown.divided_gain))
+}
+
+/// Returns true when a record stays where it begins: a lead that opens for a while does not.
+fn is_steady(waveform: &Waveform, level_v: f64) -> bool {
+    let (least, most) = waveform
+        .volts
+        .iter()
+        .fold((f32::INFINITY, f32::NEG_INFINITY), |(least, most), it| {
+            (least.min(*it), most.max(*it))
+        });
+    f64::from(most - least) < NEAR * level_v
 }
 
 /// Returns the mean of a record, V, and its standard uncertainty.

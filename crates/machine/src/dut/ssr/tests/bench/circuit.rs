@@ -37,7 +37,7 @@ impl Bench {
     }
 
     fn is_lead_open(&self) -> bool {
-        self.jobs > self.lead_opens_after
+        self.jobs > self.lead_opens_after && self.jobs <= self.lead_heals_after
     }
 
     /// Returns the drop at a current without the limit of the source, V.

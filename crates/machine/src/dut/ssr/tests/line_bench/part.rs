@@ -49,6 +49,8 @@ pub struct Part {
     pub dies_s: f64,
     /// Time into the record of the loop at which the loop opens, s; infinite for a loop that stays closed.
     pub loop_opens_s: f64,
+    /// Time after which a dead line or an open loop is whole again, s.
+    pub heals_after_s: f64,
     /// True for a short in the socket.
     pub is_socket_shorted: bool,
     pub failing: Option<(Device, &'static str)>,
@@ -86,6 +88,7 @@ pub fn good() -> Part {
         dead_from: usize::MAX,
         dies_s: f64::NEG_INFINITY,
         loop_opens_s: f64::INFINITY,
+        heals_after_s: f64::INFINITY,
         is_socket_shorted: false,
         failing: None,
         source: 1.0,

@@ -33,7 +33,8 @@ impl LineBench {
     }
 
     fn source_v(&self, at_s: f64) -> f64 {
-        if at_s >= self.dead_s {
+        let has_healed = at_s >= self.dead_s + self.part.heals_after_s;
+        if at_s >= self.dead_s && !has_healed {
             return 0.0;
         }
         let omega = TAU * self.part.hz;
