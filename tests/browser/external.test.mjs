@@ -51,15 +51,15 @@ test("bad input enters nothing and says what was expected", async () => {
     const page = await opened(language);
     await shown(page, "#x_standing", WORDS["x-not_acceptable"][language]);
     for (const [typed, expected] of [
-      [{ key: "r_iso_ohm", value: "-1", u: "1" }, "-1"],
-      [{ key: "r_iso_ohm", value: "4e10" }, "guard_band"],
-      [{ key: "r_iso_ohm", value: "4e10", u: "-4" }, "-4"],
-      [{ key: "r_iso_ohm", value: "4e10", u: "4e9", serial: "no such part" }, "no such part"],
-      [{ key: "r_iso_ohm", value: "4e10", u: "4e9", seq: "99" }, "99"],
-      [{ key: "dwv_ua", value: "3", u: "1" }, "dwv_ua"],
+      [{ key: "r_iso_ohm", value: "-1", u: "1" }, { en: 'found "-1", expected a number of ohm above 0', zh: '数值 "-1" 不在' }],
+      [{ key: "r_iso_ohm", value: "4e10" }, { en: 'which rule "guard_band" needs', zh: "guard_band 下必须填写" }],
+      [{ key: "r_iso_ohm", value: "4e10", u: "-4" }, { en: 'u: found "-4"', zh: "须为大于 0 的数" }],
+      [{ key: "r_iso_ohm", value: "4e10", u: "4e9", serial: "none" }, { en: 'serial: found "none"', zh: '没有序列号为 "none"' }],
+      [{ key: "r_iso_ohm", value: "4e10", u: "4e9", seq: "99" }, { en: 'seq: found "99"', zh: '没有工件号为 "99"' }],
+      [{ key: "dwv_ua", value: "3", u: "1" }, { en: 'key: found "dwv_ua"', zh: '没有项目 "dwv_ua"' }],
     ]) {
       await enter(page, typed);
-      await shown(page, "#x_answer", expected);
+      await shown(page, "#x_answer", expected[language]);
       assert.equal(await rows(page), 0);
     }
     await page.fill("#x_value", "");

@@ -76,7 +76,7 @@ pub(super) enum ApiError {
     /// 409: the person may not approve this revision; `code` says why.
     #[error("{}", refusal(.code).say(Lang::En))]
     NotApproved { code: &'static str },
-    /// 400, 404, 409 or 503: the server refuses a plan for tooling, or a change of a plan.
+    /// 400, 404, 409 or 503: the server refuses a plan for tooling, a change of a plan, or a result from outside.
     #[error("{}", .why.say(Lang::En))]
     Plan { status: StatusCode, why: Message },
     /// 500: a blocking task panicked or was cancelled.

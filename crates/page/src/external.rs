@@ -9,6 +9,7 @@ use super::router::App;
 use super::sessions::{now_us, require_role};
 use axum::Json;
 use axum::extract::State;
+use axum::http::StatusCode;
 use history::inquiry::{InquiryError, checks};
 use history::{
     Archive, EnteredResults, ExternalResult, ExternalSample, ExternalStanding, Filter, Moment,
@@ -18,6 +19,7 @@ use machine::dut::External;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::Path;
+use texts::Message;
 use utoipa::{IntoParams, ToSchema};
 
 /// Results of a lot from outside of the rig.
@@ -144,6 +146,20 @@ fn write(db: &Path, who: &str, typed: &TypedResult) -> Result<(), ApiError> {
     entered.map(drop).map_err(refused)
 }
 
+/// Returns the code of the refusal of a column.
+fn code(column: &str) -> &'static str {
+    match column {
+        "recipe" => "external_recipe",
+        "key" => "external_key",
+        "u" => "external_u",
+        "serial" => "external_serial",
+        "seq" => "external_seq",
+        "run" => "external_run",
+        "at" => "external_at",
+        _value => "external_value",
+    }
+}
+
 fn refused(why: ResultRefusal) -> ApiError {
     match why {
         ResultRefusal::Wrong {
@@ -156,7 +172,14 @@ fn refused(why: ResultRefusal) -> ApiError {
             found,
             expected,
             ..
-        } => InquiryError::member(column, format!("found {found}, expected {expected}")).into(),
+        } => {
+            let said = format!("{column}: found {found}, expected {expected}");
+            let why = Message::new("refusal", code(column));
+            ApiError::Plan {
+                status: StatusCode::BAD_REQUEST,
+                why: why.with("said", said).with("found", found),
+            }
+        }
         ResultRefusal::Csv(_) | ResultRefusal::Again { .. } => {
             InquiryError::member("value", why.to_string()).into()
         }
