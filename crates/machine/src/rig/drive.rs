@@ -166,12 +166,13 @@ impl Outputs {
         self.prepare_edge(self.wiring.digital_out(DigitalOut::AxisDrive).module);
     }
 
-    /// Inserts a write before the next one of the module that starts the axis: the same values with the drive low.
+    /// Inserts a write before the next one of the module that starts the axis: the same values with the drive low. A rig
+    /// with a rack has no axis.
     fn prepare_edge(&mut self, module: ModuleId) {
-        let drive = self.wiring.digital_out(DigitalOut::AxisDrive);
-        if drive.module != module {
+        let drive = self.wiring.wired_out(DigitalOut::AxisDrive);
+        let Some(drive) = drive.filter(|it| it.module == module) else {
             return;
-        }
+        };
         if let Some(Output {
             image: Image::Bits { word, before, .. },
             due,

@@ -2,9 +2,11 @@
 
 use super::{text, wiring};
 use crate::guard::{Actuator, Guard, GuardSettings, Motion, PartSize, Position, Situation, Stroke};
-use crate::rig::drive::{DriveError, Outputs};
+use crate::rig::drive::{DriveError, Outputs, Write};
 use crate::rig::level::{Correction, SupplyError};
 use crate::rig::point::DigitalOut;
+use crate::rig::settings::RigSettings;
+use crate::rig::wiring::Wiring;
 use std::sync::Arc;
 use units::Volt;
 
@@ -47,6 +49,19 @@ fn at_start_every_output_gets_its_safe_value() {
         ]
     );
     assert!(outputs.writes().is_empty());
+}
+
+#[test]
+fn a_lost_write_repeats_without_an_axis() {
+    let settings = include_str!("../../../../../config/rigs/thermostat/rig.toml");
+    let settings: RigSettings = toml::from_str(settings).unwrap();
+    let wiring = Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap();
+    let mut outputs = Outputs::new(Arc::new(wiring));
+    let requests =
+        |all: &[Write]| -> Vec<String> { all.iter().map(|it| text(&it.command)).collect() };
+    let sent = outputs.writes();
+    sent.iter().for_each(|lost| outputs.failed(lost.module));
+    assert_eq!(requests(&outputs.writes()), requests(&sent));
 }
 
 #[test]
