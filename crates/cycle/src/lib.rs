@@ -44,7 +44,7 @@ mod traffic;
 
 pub use instruments::InstrumentEnds;
 pub use lateness::Lateness;
-pub use snapshot::{Snapshot, snapshots};
+pub use snapshot::{Snapshot, Snapshots, snapshots};
 pub use traffic::LineEnds;
 
 use bus::{Pace, Passage, Reading, Timer};
@@ -105,7 +105,7 @@ pub struct CycleLinks {
     /// Carries the readings of the code reader; `None` in a lot without one.
     pub readings: Option<mpsc::Receiver<Reading>>,
     /// Carries snapshots to the screens; `None` on a rig without a screen.
-    pub snapshots: Option<mpsc::Sender<Snapshot>>,
+    pub snapshots: Option<Snapshots>,
     /// How late this computer passes bytes on; never late in virtual time.
     pub passage: Passage,
 }
@@ -165,8 +165,6 @@ pub struct Cycle {
     reader: Option<Alarm>,
     verified: bool,
     publish_at: RigTime,
-    /// Instant of the last view sent.
-    published: Option<Instant>,
     /// State of the whole rig (PackML) in the last event sent.
     published_state: packml::State,
     /// Reason why the scan failed to read a reset status on a measuring line. The lost read may have cleared the sign
@@ -223,7 +221,6 @@ impl Cycle {
             reader: None,
             verified: false,
             publish_at: RigTime(0),
-            published: None,
             published_state: packml::State::Stopped,
             worst_age: Span(0),
             refused: None,

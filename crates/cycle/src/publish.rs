@@ -13,14 +13,8 @@ use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
 use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, RackView, Reaction, Token};
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
 use texts::Lang;
 use units::{RigTime, Span};
-
-/// Shortest rig time between two views.
-pub const PACE: Span = Span::ms(50);
-/// Shortest wall time between two views: a person sees no more, however fast a simulated rig runs.
-const SEEN: Duration = Duration::from_millis(10);
 
 /// Translates an order of a screen for the station; refuses an incomplete order, and one that only changes the history.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
@@ -67,24 +61,23 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 }
 
 impl Cycle {
-    /// Sends a snapshot to the screens, at most one per [`PACE`] and per [`SEEN`]; the `last` one goes out at any time.
+    /// Sends a snapshot to the screens, at most one per [`Snapshots::every`](super::Snapshots::every); the `last` one goes
+    /// out at any time.
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
         let Some(snapshots) = self.links.snapshots.clone() else {
             return;
         };
-        let is_seen = self.published.is_none_or(|it| it.elapsed() >= SEEN);
-        if !last && (now < self.publish_at || !is_seen) {
+        if now < self.publish_at && !last {
             return;
         }
-        self.publish_at = now + PACE;
-        self.published = Some(Instant::now());
+        self.publish_at = now + snapshots.every;
         let mut machine = self.machine(now);
         machine.jogs = self.jog_preview(now);
         let station = &self.station;
         let (activity, ledger) = (station.activity(), station.ledger());
         let in_lot = !station.is_between_lots();
         // A full channel drops the snapshot: screens lag behind, the rig does not.
-        let _ = snapshots.try_send(Snapshot {
+        let _ = snapshots.channel.try_send(Snapshot {
             at_us: jiff::Timestamp::now().as_microsecond(),
             state: activity.name(),
             doing: activity.code(),

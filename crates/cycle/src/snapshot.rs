@@ -2,9 +2,14 @@
 
 use machine::view::{AlarmLine, LatenessView, Machine, View};
 use tokio::sync::{mpsc, watch};
+use units::Span;
 
 /// Largest number of snapshots that wait in the channel; the cycle drops further ones.
 const WAITING: usize = 16;
+/// Shortest rig time between two snapshots.
+const EVERY: Span = Span::ms(50);
+/// Shortest wall time between two snapshots of a simulated rig that runs faster than the clock: a person sees no more.
+const SEEN_S: f64 = 0.01;
 
 /// Parts of a [`View`] that the cycle knows.
 #[derive(Debug)]
@@ -39,17 +44,29 @@ impl Snapshot {
     }
 }
 
+/// The cycle's end of the channel to the screens.
+#[derive(Debug, Clone)]
+pub struct Snapshots {
+    pub(super) channel: mpsc::Sender<Snapshot>,
+    /// Shortest rig time between two snapshots.
+    pub(super) every: Span,
+}
+
 /// Returns the cycle's end of the channel, `None` without a screen, and a future that puts each snapshot into `view`
-/// until the cycle drops its end.
+/// until the cycle drops its end. `speed` is that of the rig in multiples of the wall clock, `None` where no clock holds
+/// it.
 pub fn snapshots(
     view: watch::Sender<View>,
-) -> (Option<mpsc::Sender<Snapshot>>, impl Future<Output = ()>) {
-    let (sender, mut receiver) = mpsc::channel::<Snapshot>(WAITING);
+    speed: Option<f64>,
+) -> (Option<Snapshots>, impl Future<Output = ()>) {
+    let (channel, mut receiver) = mpsc::channel::<Snapshot>(WAITING);
+    let every = EVERY.max(Span::seconds(SEEN_S * speed.unwrap_or(1.0)));
+    let snapshots = Snapshots { channel, every };
     let is_seen = view.receiver_count() > 0;
     let showing = async move {
         while let Some(snapshot) = receiver.recv().await {
             view.send_modify(|view| snapshot.show(view));
         }
     };
-    (is_seen.then_some(sender), showing)
+    (is_seen.then_some(snapshots), showing)
 }

@@ -105,7 +105,7 @@ impl LotRunner<'_> {
         stream.tell(&LotEvent::Begun)?;
         let (events, received) = mpsc::unbounded_channel::<Event>();
         let recorded = Arc::new(AtomicU64::new(0));
-        let (snapshots, showing) = cycle::snapshots(controls.view.clone());
+        let (snapshots, showing) = cycle::snapshots(controls.view.clone(), speed);
         let showing = tokio::spawn(showing);
         let links = CycleLinks {
             events,
