@@ -13,6 +13,8 @@ use std::time::Duration;
 
 /// Size of the storm in CI: rigs, parts per rig, then least numbers of cuts, dropped senders and killed servers.
 const SMALL: [u64; 5] = [3, 200, 12, 10, 2];
+/// Parts that each rig adds before a round.
+const PER_ROUND: u64 = 5;
 /// Most bytes that a connection carries before it is cut; a batch of 200 parts has more.
 const CUT_WITHIN: u64 = 40_000;
 
@@ -50,7 +52,7 @@ async fn nothing_is_lost_or_doubled_when_everything_dies() {
         let target = server.target("owner", proxy.port);
         let mut sending = Vec::new();
         for (n, rig) in (0..).zip(&all) {
-            rig.run(&format!("L{rounds}"), parts / 50 + 1, 4);
+            rig.run(&format!("L{rounds}"), PER_ROUND, 4);
             let (rig, target, dropped) = (Arc::clone(rig), target.clone(), Arc::clone(&dropped));
             let mut random = Xoshiro256PlusPlus::seed_from_u64(rounds * 1000 + n);
             let patience = Duration::from_millis(random.next_u64() % 1000);

@@ -2,9 +2,11 @@
 
 use super::values::RelayValues;
 use crate::world::probes::Contact;
+use std::ops::RangeInclusive;
 
-/// Least voltage that counts as full, as a fraction of nominal.
-const FULL: f64 = 0.98;
+/// Voltages that count as full, as fractions of nominal: a search may operate a stiff relay at a higher one, which makes
+/// it faster.
+const FULL: RangeInclusive<f64> = 0.98..=1.02;
 /// Highest voltage that counts as off, as a fraction of nominal.
 const NONE: f64 = 0.05;
 
@@ -94,15 +96,16 @@ impl RelayRecord {
     /// Records a step of the supply; `still` means that the armature was at a stop, so that an operate or release time
     /// may begin.
     pub(super) fn supply_step(&mut self, t_us: f64, old_v: f64, new_v: f64, still: bool) {
-        let (full, none) = (FULL * self.nominal_v, NONE * self.nominal_v);
+        let is_full = |volts: f64| FULL.contains(&(volts / self.nominal_v));
+        let is_off = |volts: f64| volts <= NONE * self.nominal_v;
         if (new_v - old_v).abs() < 0.02 * self.nominal_v {
             return;
         }
         let [no, nc] = &mut self.timing;
         no.following = false;
         nc.following = false;
-        no.start_us = (still && old_v <= none && new_v >= full).then_some(t_us);
-        nc.start_us = (still && old_v >= full && new_v <= none).then_some(t_us);
+        no.start_us = (still && is_off(old_v) && is_full(new_v)).then_some(t_us);
+        nc.start_us = (still && is_full(old_v) && is_off(new_v)).then_some(t_us);
     }
 
     /// Records the first make of a contact after the armature has moved across from the other one.
