@@ -49,7 +49,8 @@ fn warm_lots(order: &Order) -> usize {
 /// Runs the lots of the order in one program and makes the report.
 ///
 /// # Errors
-/// Fails when no lot follows the first [`WARM_PARTS`] parts, or when the program does not start, refuses an order, raises an alarm that ends a lot, or shows no progress.
+/// Fails when no lot follows the first [`WARM_PARTS`] parts, or when the program does not start, refuses an order, raises
+/// an alarm that ends a lot, or shows no progress.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let warm = warm_lots(order);
     ensure!(

@@ -47,8 +47,8 @@ pub(super) fn reversed(context: &Context) -> Vec<Act> {
     acts
 }
 
-/// Reads the NC contact at rest, reversed under `alternating`, else in all polarities. During the first conversion the stage reads the temperature and
-/// prepares the timed operation: ARM, counters, supply at nominal with the drive off.
+/// Reads the NC contact at rest, reversed under `alternating`, else in all polarities. During the first conversion the
+/// stage reads the temperature and prepares the timed operation: ARM, counters, supply at nominal with the drive off.
 pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
     let mut acts = vec![
         set(&[

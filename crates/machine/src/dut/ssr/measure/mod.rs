@@ -6,9 +6,11 @@
 //! ```
 //! A finding ends the measuring stages; a figure outside its limit does not. A finding about the output fails the part
 //! only after [`known`] states of the fixture have shown no other cause. Every test ends with the discharge, whatever has
-//! ended it. A part that has failed is tested once more, from the pins to the discharge: a contact that opens for some
-//! milliseconds does not fail it, because the second test contradicts the first. When a job fails, the fixture disconnects the sources first, by modules whose watchdog needs
-//! no instrument, and the instruments follow. A socket that is not proven to be below 30 V is trouble of the rig.
+//! ended it. A part that has failed is tested once more, from the pins to the discharge. When the second test passes it, the
+//! part is void: a contact has opened for some milliseconds.
+//!
+//! When a job fails, the fixture disconnects the sources first, by modules whose watchdog needs no instrument, and the
+//! instruments follow. A socket that is not proven to be below 30 V is trouble of the rig.
 //!
 //! A result inside the guard band, and in a thorough test every result, is measured again at once, `slow_repeats` times.
 
