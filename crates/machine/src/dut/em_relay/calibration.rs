@@ -5,6 +5,7 @@
 //! reference parts, never from the parts under test. A calibration without reference parts measures no threshold
 //! ([`Calibration::overshoots`] is `None`).
 
+use super::coil::relative_per_kelvin;
 use super::overshoot::OvershootModel;
 use super::recipe::CoilChannels;
 use super::threshold::Direction;
@@ -13,7 +14,10 @@ use crate::dut::promise::Broken;
 use crate::gauge::factor::Named;
 use crate::gauge::{Deviation, Factor};
 use serde::{Deserialize, Serialize};
-use units::{Unit, Volt};
+use units::{Celsius, Unit, Volt};
+
+/// Temperature at which the sensitivities of reference parts are taken.
+pub(super) const ABOUT: Celsius = Celsius(23.0);
 
 /// Reading of an analog input as a linear function of the true terminal voltage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -142,6 +146,19 @@ pub struct Temperature {
     /// Certified over found coil resistance at the reference temperature. It contains the error of the thermometer, of
     /// the reference resistor and the mean heating of the coil.
     pub coil: Factor,
+    /// Standard deviation of the mean temperature of the reference parts from the track, kelvin: another day finds other
+    /// factors of the same rig. 0 in calibrations of earlier versions.
+    #[serde(default)]
+    pub mean_k: f64,
+}
+
+impl Temperature {
+    /// Returns a factor that is proportional to `scale` per relative change of copper, with the uncertainty that the
+    /// temperature of the reference parts adds to it from day to day.
+    fn on_any_day(&self, factor: Factor, scale: f64) -> Factor {
+        let moves = scale * relative_per_kelvin(ABOUT) * self.mean_k;
+        Factor::new(factor.value, factor.u.hypot(moves))
+    }
 }
 
 /// All factors of a rig with their dates, as the history stores them.
@@ -256,8 +273,8 @@ impl Calibration {
         })
     }
 
-    /// Returns every measured factor. The slope of the coarse ramp is absent, because it is the maker's and not
-    /// measured.
+    /// Returns every measured factor, as uncertain as it is for another day. The slope of the coarse ramp is absent,
+    /// because it is the maker's and not measured.
     fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };
         let mut all = vec![
@@ -275,11 +292,18 @@ impl Calibration {
             named("fine_slope", Unit::VoltPerSecond, self.fine_v_per_s),
         ];
         all.extend(self.ohm_high.map(|it| named("coil_high", Unit::Ohm, it)));
-        let temperature = self.temperature;
-        all.extend(temperature.map(|it| named("coil_correction", Unit::One, it.coil)));
-        if let Some(overshoots) = &self.overshoots {
-            all.push(named("operate_lag", Unit::Volt, overshoots.operate.fine_v));
-            all.push(named("release_lag", Unit::Volt, overshoots.release.fine_v));
+        let on_any_day = |factor: Factor, scale| match &self.temperature {
+            Some(found) => found.on_any_day(factor, scale),
+            None => factor,
+        };
+        if let Some(Temperature { coil, .. }) = self.temperature {
+            let factor = on_any_day(coil, coil.value);
+            all.push(named("coil_correction", Unit::One, factor));
+        }
+        if let Some(Overshoots { operate, release }) = &self.overshoots {
+            let lag = |it: &Overshoot| on_any_day(it.fine_v, it.at_v);
+            all.push(named("operate_lag", Unit::Volt, lag(operate)));
+            all.push(named("release_lag", Unit::Volt, lag(release)));
         }
         all
     }
@@ -288,6 +312,23 @@ impl Calibration {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_temperature_of_a_day_moves_factors_of_reference_parts() {
+        let found = Temperature {
+            part_k: Deviation::known(0.15),
+            coil: Factor::new(0.999, 0.0),
+            mean_k: 0.1,
+        };
+        let coil = found.on_any_day(found.coil, found.coil.value);
+        assert!((coil.u / 0.000_388 - 1.0).abs() < 0.01, "{}", coil.u);
+        let lag = found.on_any_day(Factor::new(0.038, 0.001), 7.9);
+        assert!(
+            (lag.u - 0.001_f64.hypot(0.003_07)).abs() < 2e-5,
+            "{}",
+            lag.u
+        );
+    }
 
     #[test]
     fn asking_for_a_voltage_delivers_it() {

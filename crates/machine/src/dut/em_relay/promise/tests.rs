@@ -120,6 +120,7 @@ fn budgets_use_the_temperature_that_the_calibration_found() {
     Arc::make_mut(&mut context.calibration).temperature = Some(Temperature {
         part_k,
         coil: Factor::new(1.001, 0.0004),
+        mean_k: 0.0,
     });
     assert_eq!(
         (temperature_k(&context), context.part_k()),

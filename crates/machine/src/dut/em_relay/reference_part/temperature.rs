@@ -8,17 +8,13 @@
 
 use super::{ReferenceRun, Shift};
 use crate::dut::accuracy::AccuracySettings;
-use crate::dut::em_relay::calibration::Temperature;
+use crate::dut::em_relay::calibration::{ABOUT, Temperature};
 use crate::dut::em_relay::coil::relative_per_kelvin;
 use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::evidence::Residuals;
 use crate::gauge::{Deviation, Factor};
-use units::Celsius;
-
-/// Temperature at which the sensitivities are taken.
-const ABOUT: Celsius = Celsius(23.0);
 
 impl ReferenceRun {
     /// Returns the residuals of the operate voltages against the temperature difference that `accuracy` promises;
@@ -49,6 +45,7 @@ impl ReferenceRun {
         Temperature {
             part_k: part_minus_track_k.times((1.0 + 1.0 / n).sqrt()),
             coil: Factor::new(mean, squares.sqrt() / n),
+            mean_k: part_minus_track_k.value / n.sqrt(),
         }
     }
 }
