@@ -52,7 +52,7 @@ test("bad input enters nothing and says what was expected", async () => {
     await shown(page, "#x_standing", WORDS["x-not_acceptable"][language]);
     for (const [typed, expected] of [
       [{ key: "r_iso_ohm", value: "-1", u: "1" }, { en: 'found "-1", expected a number of ohm above 0', zh: '数值 "-1" 不在' }],
-      [{ key: "r_iso_ohm", value: "4e10" }, { en: 'which rule "guard_band" needs', zh: "guard_band 下必须填写" }],
+      [{ key: "r_iso_ohm", value: "4e10" }, { en: 'which rule "guard_band" needs', zh: "按保护带规则判定时必须填写" }],
       [{ key: "r_iso_ohm", value: "4e10", u: "-4" }, { en: 'u: found "-4"', zh: "须为大于 0 的数" }],
       [{ key: "r_iso_ohm", value: "4e10", u: "4e9", serial: "none" }, { en: 'serial: found "none"', zh: '没有序列号为 "none"' }],
       [{ key: "r_iso_ohm", value: "4e10", u: "4e9", seq: "99" }, { en: 'seq: found "99"', zh: '没有工件号为 "99"' }],
