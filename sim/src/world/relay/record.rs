@@ -4,9 +4,9 @@ use super::values::RelayValues;
 use crate::world::probes::Contact;
 use std::ops::RangeInclusive;
 
-/// Voltages that count as full, as fractions of nominal: a search may operate a stiff relay at a higher one, which makes
-/// it faster.
-const FULL: RangeInclusive<f64> = 0.98..=1.02;
+/// Voltages that count as full, as fractions of nominal: leads take some, and a search may operate a stiff relay at a
+/// higher one, which makes it faster.
+const FULL: RangeInclusive<f64> = 0.98..=1.005;
 /// Highest voltage that counts as off, as a fraction of nominal.
 const NONE: f64 = 0.05;
 
