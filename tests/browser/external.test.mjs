@@ -56,7 +56,7 @@ test("bad input enters nothing and says what was expected", async () => {
       [{ key: "r_iso_ohm", value: "4e10", u: "-4" }, { en: 'u: found "-4"', zh: "须为大于 0 的数" }],
       [{ key: "r_iso_ohm", value: "4e10", u: "4e9", serial: "none" }, { en: 'serial: found "none"', zh: '没有序列号为 "none"' }],
       [{ key: "r_iso_ohm", value: "4e10", u: "4e9", seq: "99" }, { en: 'seq: found "99"', zh: '没有工件号为 "99"' }],
-      [{ key: "dwv_ua", value: "3", u: "1" }, { en: 'key: found "dwv_ua"', zh: '没有项目 "dwv_ua"' }],
+      [{ key: "dwv_ua", value: "3", u: "1" }, { en: 'key: found "dwv_ua"', zh: '没有机外测试项目 "dwv_ua"' }],
     ]) {
       await enter(page, typed);
       await shown(page, "#x_answer", expected[language]);
