@@ -152,15 +152,6 @@ pub struct Temperature {
     pub mean_k: f64,
 }
 
-impl Temperature {
-    /// Returns a factor that is proportional to `scale` per relative change of copper, with the uncertainty that the
-    /// temperature of the reference parts adds to it from day to day.
-    fn on_any_day(&self, factor: Factor, scale: f64) -> Factor {
-        let moves = scale * relative_per_kelvin(ABOUT) * self.mean_k;
-        Factor::new(factor.value, factor.u.hypot(moves))
-    }
-}
-
 /// All factors of a rig with their dates, as the history stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
@@ -292,21 +283,25 @@ impl Calibration {
             named("fine_slope", Unit::VoltPerSecond, self.fine_v_per_s),
         ];
         all.extend(self.ohm_high.map(|it| named("coil_high", Unit::Ohm, it)));
-        let on_any_day = |factor: Factor, scale| match &self.temperature {
-            Some(found) => found.on_any_day(factor, scale),
-            None => factor,
-        };
+        let mean_k = self.temperature.map_or(0.0, |it| it.mean_k);
         if let Some(Temperature { coil, .. }) = self.temperature {
-            let factor = on_any_day(coil, coil.value);
+            let factor = on_any_day(coil, coil.value, mean_k);
             all.push(named("coil_correction", Unit::One, factor));
         }
         if let Some(Overshoots { operate, release }) = &self.overshoots {
-            let lag = |it: &Overshoot| on_any_day(it.fine_v, it.at_v);
+            let lag = |it: &Overshoot| on_any_day(it.fine_v, it.at_v, mean_k);
             all.push(named("operate_lag", Unit::Volt, lag(operate)));
             all.push(named("release_lag", Unit::Volt, lag(release)));
         }
         all
     }
+}
+
+/// Returns a factor that changes by `scale` times the relative change of copper, with the uncertainty that the mean
+/// temperature of the reference parts, [`Temperature::mean_k`], adds to it from day to day.
+fn on_any_day(factor: Factor, scale: f64, mean_k: f64) -> Factor {
+    let moves = scale * relative_per_kelvin(ABOUT) * mean_k;
+    Factor::new(factor.value, factor.u.hypot(moves))
 }
 
 #[cfg(test)]
@@ -315,14 +310,9 @@ mod tests {
 
     #[test]
     fn the_temperature_of_a_day_moves_factors_of_reference_parts() {
-        let found = Temperature {
-            part_k: Deviation::known(0.15),
-            coil: Factor::new(0.999, 0.0),
-            mean_k: 0.1,
-        };
-        let coil = found.on_any_day(found.coil, found.coil.value);
+        let coil = on_any_day(Factor::new(0.999, 0.0), 0.999, 0.1);
         assert!((coil.u / 0.000_388 - 1.0).abs() < 0.01, "{}", coil.u);
-        let lag = found.on_any_day(Factor::new(0.038, 0.001), 7.9);
+        let lag = on_any_day(Factor::new(0.038, 0.001), 7.9, 0.1);
         assert!(
             (lag.u - 0.001_f64.hypot(0.003_07)).abs() < 2e-5,
             "{}",

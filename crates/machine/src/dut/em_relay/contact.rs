@@ -1,7 +1,7 @@
 //! Contact resistance, four-wire: drops with the 1 A source in both directions, whose difference is free of the thermal
 //! EMF, of the converter's offset and of the monitor's current.
 //!
-//! A closure has one reading ([`Drop::single`]) or, with the source reversed on it, several ([`Closure`]). Two closures
+//! A closure has one reading ([`ContactDrop::single`]) or, with the source reversed on it, several ([`Closure`]). Two closures
 //! with one reading each in opposite directions have the mean resistance `R = K (V+ - V-) / 2`; any other number also
 //! needs the drop without current, the [`Zero`]. The calibration finds `K` on the 50 mOhm reference with the same
 //! source, amplifier and converter, so `K` contains the current and all gains.
@@ -85,14 +85,14 @@ impl Zero {
 
 /// Drop of one closure, turned to the forward direction, volts at the terminal.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drop {
+pub struct ContactDrop {
     turned: Volt,
     /// How often the zero enters `turned`: +1 forward, -1 reversed, 0 in a drop that is free of it.
     zeros: f64,
     u_v: f64,
 }
 
-impl Drop {
+impl ContactDrop {
     /// Returns the drop of a closure with one reading, forward or reversed; `reading_v` is the uncertainty of a reading.
     pub fn single(read: Volt, reverse: bool, reading_v: f64) -> Self {
         let sign = if reverse { -1.0 } else { 1.0 };
@@ -120,7 +120,7 @@ impl Drop {
 
 /// Returns the mean resistance of these closures in milliohms; `None` without a closure. The budget omits the scatter
 /// from closure to closure: the result describes these closures.
-pub fn resistance(drops: &[Drop], zero: Zero, mohm_per_v: Factor) -> Option<Reading> {
+pub fn resistance(drops: &[ContactDrop], zero: Zero, mohm_per_v: Factor) -> Option<Reading> {
     if drops.is_empty() {
         return None;
     }
@@ -154,7 +154,7 @@ mod tests {
         u: 0.005,
     };
 
-    fn mohm(drops: &[Drop], zero: Zero) -> Reading {
+    fn mohm(drops: &[ContactDrop], zero: Zero) -> Reading {
         resistance(drops, zero, PER_V).expect("a closure")
     }
 
@@ -162,15 +162,15 @@ mod tests {
     fn reversal_removes_emf_and_offset() {
         let read = [0.9 + 0.0105, -0.9 + 0.0105].map(Volt);
         let closure = Closure::of(&read, Polarities::PlusMinus).expect("two readings");
-        let reading = mohm(&[Drop::reversed(closure, 0.002)], Zero::unknown());
+        let reading = mohm(&[ContactDrop::reversed(closure, 0.002)], Zero::unknown());
         assert!((reading.value - 18.0).abs() < 1e-12);
         assert!((closure.zero.0 - 0.0105).abs() < 1e-12);
     }
 
     #[test]
     fn two_closures_in_opposite_directions_need_no_zero() {
-        let forward = Drop::single(Volt(0.9 + 0.0105), false, 0.002);
-        let reversed = Drop::single(Volt(-1.1 + 0.0105), true, 0.002);
+        let forward = ContactDrop::single(Volt(0.9 + 0.0105), false, 0.002);
+        let reversed = ContactDrop::single(Volt(-1.1 + 0.0105), true, 0.002);
         let pair = mohm(&[forward, reversed], Zero::unknown());
         assert!((pair.value - 20.0).abs() < 1e-12, "mean of 18 and 22");
         assert!(pair.expanded() < 0.1);
@@ -202,7 +202,7 @@ mod tests {
             volts: Volt(0.0),
             u_v: 1.0,
         };
-        let drop = Drop {
+        let drop = ContactDrop {
             turned: Volt(0.9),
             zeros: 1.0,
             u_v: 1.0,

@@ -7,7 +7,7 @@ use super::state::TestState;
 use super::{Context, INTERLOCK, Stage, set};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
-use crate::dut::em_relay::contact::{Closure, Drop, Zero, resistance};
+use crate::dut::em_relay::contact::{Closure, ContactDrop, Zero, resistance};
 use crate::dut::em_relay::finding::{Contact, Finding};
 use crate::dut::em_relay::points::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
 use crate::dut::em_relay::readings::Readings;
@@ -128,12 +128,12 @@ pub(super) fn conclude_nc(
     let u_v = context.reading_u_v();
     match closure(context, readings) {
         Ok(closure) if context.alternates() => {
-            let drop = Drop::single(closure.drop, true, u_v);
+            let drop = ContactDrop::single(closure.drop, true, u_v);
             add(context, (Contact::Nc, drop), &readings.drops, state);
         }
         Ok(closure) => {
             state.plan.zero = Some(Zero::read(closure.zero, closure.u_v(u_v)));
-            let drop = Drop::reversed(closure, u_v);
+            let drop = ContactDrop::reversed(closure, u_v);
             add(context, (Contact::Nc, drop), &readings.drops, state);
         }
         Err(unread) => {
@@ -145,7 +145,7 @@ pub(super) fn conclude_nc(
 }
 
 /// Returns the parameter of a contact, and the drops of its closures.
-fn of(contact: Contact, plan: &Plan) -> (Parameter, &[Drop]) {
+fn of(contact: Contact, plan: &Plan) -> (Parameter, &[ContactDrop]) {
     match contact {
         Contact::No => (Parameter::ContactResistanceNo, &plan.no),
         Contact::Nc => (Parameter::ContactResistanceNc, &plan.nc),
@@ -176,7 +176,7 @@ pub(super) fn is_clear(context: &Context, state: &TestState, contact: Contact) -
 /// contact: the source was off, or the reply belongs to another request.
 pub(super) fn add(
     context: &Context,
-    (contact, drop): (Contact, Drop),
+    (contact, drop): (Contact, ContactDrop),
     samples: &[Sample],
     state: &mut TestState,
 ) {

@@ -3,7 +3,7 @@
 use super::ramp::Expected;
 use super::search::Search;
 use crate::dut::em_relay::Finding;
-use crate::dut::em_relay::contact::{Drop, Zero};
+use crate::dut::em_relay::contact::{ContactDrop, Zero};
 use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::threshold::Direction;
 use units::Volt;
@@ -22,9 +22,9 @@ pub struct Plan {
     /// Contact drop without current; `None` until read.
     pub zero: Option<Zero>,
     /// Drops of the NO closures read so far.
-    pub no: Vec<Drop>,
+    pub no: Vec<ContactDrop>,
     /// Drops of the NC closures read so far.
-    pub nc: Vec<Drop>,
+    pub nc: Vec<ContactDrop>,
     /// Contact that does not move at nominal voltage: the part fails for this finding unless the coil proves to be the
     /// cause.
     pub unmoved: Option<Finding>,

@@ -13,7 +13,7 @@ use super::state::TestState;
 use super::timing::SOURCE_FLOWS;
 use super::{Context, INTERLOCK, Ramp, Stage, set};
 use crate::dut::em_relay::act::{Act, Read};
-use crate::dut::em_relay::contact::Drop;
+use crate::dut::em_relay::contact::ContactDrop;
 use crate::dut::em_relay::finding::Contact;
 use crate::dut::em_relay::points::DigitalIn;
 use crate::dut::em_relay::points::DigitalOut::{
@@ -161,7 +161,7 @@ pub(super) fn conclude_coarse(
     if let Some(read) = readings.drops.first() {
         match drop_of(Some(read), false) {
             Ok(drop) => {
-                let drop = Drop::single(drop, true, context.reading_u_v());
+                let drop = ContactDrop::single(drop, true, context.reading_u_v());
                 contact::add(context, (Contact::No, drop), &readings.drops, state);
             }
             Err(unread) => state.record.stop(unread.of(Contact::No)),

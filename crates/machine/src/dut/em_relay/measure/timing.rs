@@ -8,7 +8,7 @@ use super::state::TestState;
 use super::{Context, OFF, Stage, TestRecord, set};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
-use crate::dut::em_relay::contact::Drop;
+use crate::dut::em_relay::contact::ContactDrop;
 use crate::dut::em_relay::finding::{Contact, Finding};
 use crate::dut::em_relay::points::DigitalIn;
 use crate::dut::em_relay::points::DigitalOut::{
@@ -197,8 +197,8 @@ pub(super) fn conclude_operate(
     match closure(context, readings) {
         Ok(closure) => {
             let drop = match context.alternates() {
-                true => Drop::single(closure.drop, false, u_v),
-                false => Drop::reversed(closure, u_v),
+                true => ContactDrop::single(closure.drop, false, u_v),
+                false => ContactDrop::reversed(closure, u_v),
             };
             contact::add(context, (Contact::No, drop), &readings.drops, state);
         }
@@ -247,7 +247,7 @@ pub(super) fn conclude_release(
     let compliance = readings.boards.iter().any(|board| board.compliance);
     match drop_of(readings.drops.first(), compliance) {
         Ok(drop) => {
-            let drop = Drop::single(drop, false, context.reading_u_v());
+            let drop = ContactDrop::single(drop, false, context.reading_u_v());
             contact::add(context, (Contact::Nc, drop), &readings.drops, state);
         }
         Err(unread) => record.stop(unread.of(Contact::Nc)),

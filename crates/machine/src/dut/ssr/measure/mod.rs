@@ -67,8 +67,6 @@ pub struct Test {
     runner: Runner,
     /// State at the end of a first test that has failed the part, while the second test is under way.
     failed: Option<Box<State>>,
-    /// True once the part is tested a second time.
-    is_second: bool,
     thorough: bool,
     number: u8,
     /// Repetitions left for the stage under way; none before its first result.
@@ -107,7 +105,6 @@ impl Test {
         Self {
             runner: Runner::new(acts, now),
             failed: None,
-            is_second: false,
             device,
             state,
             stage,
@@ -123,15 +120,14 @@ impl Test {
     /// both fail it; the first one counts.
     fn compare(&mut self, now: RigTime) {
         let fails = matches!(self.verdict(), Verdict::Fail(_));
-        if let Some(mut failed) = self.failed.take() {
+        if let Some(mut other) = self.failed.take() {
             if fails {
-                failed.record.add_time(&self.state.record);
-                self.state = *failed;
+                std::mem::swap(&mut self.state, &mut other);
             } else if self.verdict() == Verdict::Pass {
                 self.state.record.stop(Finding::Unsteady);
             }
-        } else if fails && !self.is_second {
-            self.is_second = true;
+            self.state.record.add_time(&other.record);
+        } else if fails {
             let (state, stages) = planned(&self.device, now);
             self.failed = Some(Box::new(std::mem::replace(&mut self.state, state)));
             self.stages = stages;

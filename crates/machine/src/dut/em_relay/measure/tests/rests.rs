@@ -4,7 +4,7 @@ use super::super::{coil, contact, kelvin};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, good, scan};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::bins;
-use crate::dut::em_relay::contact::Drop;
+use crate::dut::em_relay::contact::ContactDrop;
 use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::measure::TestState;
 use crate::dut::em_relay::readings::{BoardInputs, CoilScan, Readings};
@@ -123,7 +123,7 @@ fn both_polarities_give_contact_resistance_and_zero() {
     let nc = state.record.result(Parameter::ContactResistanceNc).unwrap();
     assert!((nc.value - 22.0).abs() < 1e-9);
     let read = state.plan.zero.unwrap();
-    let forward = Drop::single(Volt(1.1 + zero), false, 0.003);
+    let forward = ContactDrop::single(Volt(1.1 + zero), false, 0.003);
     assert!((forward.without(read).0 - 1.1).abs() < 1e-12);
     assert_eq!(
         state

@@ -3,7 +3,7 @@
 use super::super::{Ramp, Stage, Test};
 use super::{at_23_c, context, good, scan};
 use crate::dut::em_relay::act::{Act, Read};
-use crate::dut::em_relay::contact::Drop;
+use crate::dut::em_relay::contact::ContactDrop;
 use crate::dut::em_relay::measure::board::Armature;
 use crate::dut::em_relay::measure::{Context, coil};
 use crate::dut::em_relay::overshoot::CoarseResults;
@@ -152,7 +152,7 @@ fn after(context: Context, closures: usize, mohm: f64) -> Test {
     for _ in 0..closures {
         found(Parameter::OperateTime, 4.7, Unit::Millisecond);
     }
-    let drops = vec![Drop::single(Volt(mohm / per_v), false, 0.003); closures + 1];
+    let drops = vec![ContactDrop::single(Volt(mohm / per_v), false, 0.003); closures + 1];
     (test.state.plan.no, test.state.plan.nc) = (drops.clone(), drops);
     test
 }

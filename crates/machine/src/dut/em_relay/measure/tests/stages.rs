@@ -5,7 +5,7 @@ use super::super::{Ramp, Stage, coil, fine, operate, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, gates, scan, watched};
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::bins;
-use crate::dut::em_relay::contact::Drop;
+use crate::dut::em_relay::contact::ContactDrop;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Context, TestState};
 use crate::dut::em_relay::overshoot::{CoarseResults, OvershootModel};
@@ -247,7 +247,7 @@ fn a_timed_operation_gives_time_bounce_and_contact() {
 #[test]
 fn a_timed_release_adds_an_nc_closure() {
     let mut state = at_23_c();
-    state.plan.nc = vec![Drop::single(Volt(-1.1), true, 0.003)];
+    state.plan.nc = vec![ContactDrop::single(Volt(-1.1), true, 0.003)];
     timing::conclude_release(&context(), &timed(true, [145, 150]), &mut state);
     assert_eq!(ended(&state), None);
     let time = state.record.result(Parameter::ReleaseTime).unwrap().value;
