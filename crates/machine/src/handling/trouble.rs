@@ -53,6 +53,8 @@ pub enum Trouble {
     DoorNotLocked,
     /// The thermometer in the rack has had no usable reading for too long.
     RackUnread,
+    /// The thermometer in the rack stands still while the air moves.
+    RackStuck,
     /// The rack has not cooled within this time; it goes on cooling.
     CoolsSlowly(Span),
     /// The test of a batch has met trouble of the rig.

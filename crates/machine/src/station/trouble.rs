@@ -53,6 +53,7 @@ impl From<Trouble> for Alarm {
             Trouble::SocketLive => AlarmCode::SocketLive.into(),
             Trouble::DoorNotLocked => AlarmCode::DoorNotLocked.into(),
             Trouble::RackUnread => AlarmCode::RackUnread.into(),
+            Trouble::RackStuck => AlarmCode::RackStuck.into(),
             Trouble::CoolsSlowly(after) => {
                 Self::from(AlarmCode::CoolsSlowly).with("minutes", after.0 / 60_000_000)
             }

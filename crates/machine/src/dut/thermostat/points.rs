@@ -89,6 +89,8 @@ pub struct Points {
     pub reference: Thermometer,
     /// Thermometer on the surface of the heater; `None` on a rig without one.
     pub surface: Option<Thermometer>,
+    /// Thermometer in the rack; `None` on a rig without a rack.
+    pub rack: Option<Thermometer>,
     /// Sockets of the rack.
     pub sockets: Vec<Socket>,
 }
@@ -120,6 +122,7 @@ impl Points {
             control,
             reference,
             surface: wiring.thermometer(SURFACE),
+            rack: wiring.rack().map(|it| it.thermometer),
             sockets: wiring.rack().map_or(Vec::new(), |it| it.sockets().to_vec()),
         })
     }

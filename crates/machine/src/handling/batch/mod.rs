@@ -14,7 +14,7 @@
 //! out its parts and confirms it; without a screen, an opened door and open contacts confirm it. Loading begins again
 //! only when every contact is open, so that no old part passes for a new one.
 //!
-//! Troubles: the door does not lock, the rack has no temperature, it cools too slowly, the test takes too long or has
+//! Troubles: the door does not lock, the rack has no temperature or its thermometer is stuck, it cools too slowly, the test takes too long or has
 //! met trouble of the rig, no contact is closed in a rack that was loaded without a screen.
 //!
 //! After safe outputs or a restart: a rack without a reading counts as hot. [`Batch::home`] cools it, the door locked.
@@ -26,29 +26,29 @@
 
 mod ended;
 mod loading;
+mod rack_trust;
 mod rack_watch;
 mod testing;
 #[cfg(test)]
 mod tests;
+mod turn;
 mod unloading;
 
-use super::ledger::{BatchSocket, Ledger};
-use super::mechanism::SENSOR_AGE;
-use super::output::{Commands, NestDone, NestJob, PartEvents};
-use super::place::{NestId, Place};
-use super::serial::Serials;
+use super::ledger::BatchSocket;
+use super::output::NestDone;
+use super::place::Place;
 use super::trouble::Trouble;
 use crate::dut::Device;
 use crate::dut::batch::{BatchCurve, BatchOrder, BatchTest};
 use crate::dut::batch_shown::BatchShown;
-use crate::dut::experiment::Experiment;
 use crate::dut::prompt::Prompt;
-use crate::instrument::act::{JobDone, RunnerState};
-use crate::rig::image::Image;
+use crate::instrument::act::JobDone;
 use crate::rig::point::{DigitalIn, DigitalOut};
-use crate::rig::rack::{Rack, Socket};
+use crate::rig::rack::Rack;
 use loading::Loading;
+use rack_trust::RackTrust;
 use rack_watch::RackWatch;
+pub use turn::BatchTurn;
 use units::{RigTime, Span};
 use unloading::Unloading;
 
@@ -108,6 +108,7 @@ pub struct Batch {
     /// Number of batches that have begun.
     number: u64,
     watch: RackWatch,
+    trust: RackTrust,
     /// State of the lock and of the three lamps as commanded; `None` when safe outputs have changed them.
     shown: Option<[bool; 4]>,
     /// Outcome of the last job, until the next step takes it.
@@ -120,81 +121,12 @@ pub struct Batch {
     ended: Option<(BatchCurve, RigTime)>,
 }
 
-/// Everything that the batch sees and changes in one turn.
-pub struct BatchTurn<'a> {
-    /// Time of this turn.
-    pub now: RigTime,
-    /// Process image.
-    pub image: &'a Image,
-    /// Places of the parts.
-    pub ledger: &'a mut Ledger,
-    /// Commands of this turn to the rig.
-    pub rig: &'a mut Commands,
-    /// Events of parts in this turn.
-    pub parts: &'a mut PartEvents,
-    /// Troubles of this turn.
-    pub trouble: &'a mut Vec<Trouble>,
-    /// Serial numbers of the parts of the lot.
-    pub serials: &'a mut Serials,
-    /// Device under test.
-    pub device: &'a Device,
-    /// Ordinal of the last part whose rows are safely on the disk.
-    pub recorded: u64,
-    /// Number of parts that the lot still lacks; `None` for an endless lot.
-    pub lacking: Option<u64>,
-    /// True when a person uses a screen.
-    pub attended: bool,
-    /// True when another batch may begin.
-    pub begins: bool,
-    /// Experiment without parts that is due; `None` in a lot.
-    pub experiment: Option<Experiment>,
-}
-
-impl BatchTurn<'_> {
-    /// Returns the state of a sensor; `None` unless its value is valid.
-    fn input(&self, point: DigitalIn) -> Option<bool> {
-        self.image.input(point, self.now, SENSOR_AGE)
-    }
-
-    fn wake_within(&mut self, span: Span) {
-        let at = self.now + span;
-        let wake_at = &mut self.rig.wake_at;
-        *wake_at = Some(wake_at.map_or(at, |known| known.min(at)));
-    }
-
-    /// Returns those of these sockets whose contact is closed; `None` while a contact is unread.
-    fn closed<'s>(&self, sockets: impl IntoIterator<Item = &'s Socket>) -> Option<Vec<u16>> {
-        let mut closed = Vec::new();
-        for Socket {
-            number, contact, ..
-        } in sockets
-        {
-            if self.image.input(*contact, self.now, SENSOR_AGE)? {
-                closed.push(*number);
-            }
-        }
-        Some(closed)
-    }
-
-    /// Passes the job of a runner, or the time at which it wakes, to the rig.
-    fn run(&mut self, state: &RunnerState) {
-        match state {
-            RunnerState::Job(job) => {
-                assert!(self.rig.job.is_none(), "two jobs in one turn");
-                let (nest, job) = (NestId::FIRST, job.clone());
-                self.rig.job = Some(NestJob { nest, job });
-            }
-            RunnerState::Wait(until) => self.wake_within(until.since(self.now)),
-            RunnerState::Busy | RunnerState::Done | RunnerState::Trouble(_) => {}
-        }
-    }
-}
-
 impl Batch {
     /// Makes the batch of a rack in an unknown state.
     pub fn new(rack: Rack) -> Self {
         Self {
             watch: RackWatch::new(&rack),
+            trust: RackTrust::default(),
             rack,
             phase: Phase::Loading(Loading::default()),
             number: 0,
@@ -338,6 +270,13 @@ impl Batch {
     /// Performs a turn.
     pub fn step(&mut self, turn: &mut BatchTurn) {
         let done = self.done.take();
+        match &self.phase {
+            Phase::Testing { .. } | Phase::Cooling { .. } => {
+                self.watch.compare(&mut self.trust, turn);
+            }
+            // The fan is off.
+            Phase::Loading(_) | Phase::Locking { .. } | Phase::Unloading(_) => self.trust.pause(),
+        }
         let next = match &mut self.phase {
             Phase::Testing { since, test } => {
                 let since = *since;
@@ -365,7 +304,7 @@ impl Batch {
 
     /// Performs a turn without a test; `idle` is true when no job is under way.
     fn at_rest(&mut self, turn: &mut BatchTurn, idle: bool) -> Option<Phase> {
-        let is_cool = self.watch.is_cool(turn);
+        let is_cool = self.watch.is_cool(&self.trust, turn);
         self.watch.check(turn);
         match &mut self.phase {
             Phase::Loading(loading) => {
@@ -467,7 +406,7 @@ impl Batch {
     /// Sets lock and lamps. The door is unlocked only while a person works at the rack, and only when the last
     /// temperature of the rack is fresh and below its limit.
     fn show(&mut self, turn: &mut BatchTurn) {
-        let is_cool = self.watch.is_cool(turn);
+        let is_cool = self.watch.is_cool(&self.trust, turn);
         let (loads, unloads) = match &self.phase {
             Phase::Loading(_) => (true, false),
             Phase::Unloading(_) => (false, true),

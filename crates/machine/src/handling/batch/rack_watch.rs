@@ -5,6 +5,7 @@
 //! air of an open door.
 
 use super::BatchTurn;
+use super::rack_trust::{RackTrust, Readings};
 use crate::handling::trouble::Trouble;
 use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState};
 use crate::rig::point::{Point, Thermometer};
@@ -172,21 +173,35 @@ impl RackWatch {
     /// Returns true when a thermometer in the air has a fresh reading, or the rig has none there, and neither there nor on
     /// a surface that gives off heat a fresh reading is at the limit or above.
     fn are_surroundings_cool(&self, turn: &BatchTurn) -> bool {
-        let fresh = |all: Vec<Thermometer>| {
-            let readings = all.into_iter().filter_map(|it| reading(turn, it));
-            let fresh = readings.filter(|(_, at)| turn.now.since(*at) <= FRESH);
-            fresh.map(|(celsius, _)| celsius).collect::<Vec<_>>()
-        };
         let of_air = turn.device.air_thermometers();
         let is_bare = of_air.is_empty();
-        let (air, surfaces) = (fresh(of_air), fresh(turn.device.hot_surfaces()));
+        let (air, surfaces) = (fresh(turn, of_air), fresh(turn, turn.device.hot_surfaces()));
         let mut all = air.iter().chain(&surfaces);
-        (is_bare || !air.is_empty()) && all.all(|it| it.0 < self.unlock_below.0)
+        (is_bare || !air.is_empty()) && all.all(|it| *it < self.unlock_below.0)
     }
 
-    /// Returns true when the last reading is fresh and below the limit, and the surroundings are cool. While the rack is
-    /// cool, the limit is higher by [`HYSTERESIS_K`], and the surroundings do not matter.
-    pub fn is_cool(&mut self, turn: &BatchTurn) -> bool {
+    /// Compares the thermometer in the rack with those in the air, also during a test; reports one that stands still.
+    pub fn compare(&self, trust: &mut RackTrust, turn: &mut BatchTurn) {
+        let rack = fresh(turn, vec![self.thermometer]);
+        let air = fresh(turn, turn.device.air_thermometers());
+        let lowest = air.iter().copied().reduce(f64::min);
+        let ends = lowest.zip(air.iter().copied().reduce(f64::max));
+        let (Some(rack_c), Some((low_c, high_c))) = (rack.first(), ends) else {
+            return;
+        };
+        let readings = Readings {
+            rack_c: *rack_c,
+            air_c: [low_c, high_c],
+            are_surroundings_cool: self.are_surroundings_cool(turn),
+        };
+        if trust.step(turn.now, &readings) {
+            turn.trouble.push(Trouble::RackStuck);
+        }
+    }
+
+    /// Returns true when the last reading is fresh, below the limit and not in doubt, and the surroundings are cool. While
+    /// the rack is cool, the limit is higher by [`HYSTERESIS_K`], and the surroundings do not matter.
+    pub fn is_cool(&mut self, trust: &RackTrust, turn: &BatchTurn) -> bool {
         let Some((Celsius(value), at)) = reading(turn, self.thermometer) else {
             return false;
         };
@@ -197,6 +212,7 @@ impl RackWatch {
         };
         let was_cool = self.heat == Heat::Cool;
         let is_below = value < self.unlock_below.0 + margin_k
+            && !trust.is_in_doubt()
             && (was_cool || self.are_surroundings_cool(turn));
         if !is_below {
             self.heat = Heat::Hot;
@@ -220,6 +236,13 @@ impl RackWatch {
             turn.trouble.push(Trouble::RackUnread);
         }
     }
+}
+
+/// Returns the fresh readings of these thermometers, C.
+fn fresh(turn: &BatchTurn, all: Vec<Thermometer>) -> Vec<f64> {
+    let readings = all.into_iter().filter_map(|it| reading(turn, it));
+    let fresh = readings.filter(|(_, at)| turn.now.since(*at) <= FRESH);
+    fresh.map(|(celsius, _)| celsius.0).collect()
 }
 
 /// Returns the last usable reading of a thermometer with its time.

@@ -40,7 +40,8 @@ enum Doing {
     Wait,
     Read(Runner),
     Set(Runner),
-    Surface(Runner),
+    /// Reads rack and surface of the heater, which the control does not need.
+    Others(Runner),
     /// Pulses through the contacts of these places.
     Pulse(Runner, Vec<usize>),
 }
@@ -50,7 +51,7 @@ enum Doing {
 enum Did {
     Read,
     Set,
-    Surface,
+    Others,
     Pulse,
 }
 
@@ -147,7 +148,7 @@ impl Seconds {
                 }
                 Doing::Read(runner) => (Did::Read, runner.step(now, done.take(), image)),
                 Doing::Set(runner) => (Did::Set, runner.step(now, done.take(), image)),
-                Doing::Surface(runner) => (Did::Surface, runner.step(now, done.take(), image)),
+                Doing::Others(runner) => (Did::Others, runner.step(now, done.take(), image)),
                 Doing::Pulse(runner, _) => (Did::Pulse, runner.step(now, done.take(), image)),
             };
             match (state, did) {
@@ -160,12 +161,13 @@ impl Seconds {
                     Err(found) => return Advance::Ended(Ended::Found(found)),
                 },
                 (RunnerState::Done, Did::Set) => {
-                    let read = device.points.surface.map(Point::Temperature);
-                    let acts = read.map(|it| Act::Read(Read::points([it])));
-                    self.doing = Doing::Surface(Runner::new(acts.into_iter().collect(), now));
+                    let others = [device.points.rack, device.points.surface].into_iter();
+                    let read = |it| Act::Read(Read::points([Point::Temperature(it)]));
+                    let acts = others.flatten().map(read).collect();
+                    self.doing = Doing::Others(Runner::new(acts, now));
                 }
-                // A rig without this reading lacks one check of the heater; its batch goes on.
-                (RunnerState::Done | RunnerState::Trouble(_), Did::Surface) => {
+                // Without these readings checks of rack and heater are missing; the batch goes on.
+                (RunnerState::Done | RunnerState::Trouble(_), Did::Others) => {
                     self.doing = self.pulse(device, contacts, now);
                 }
                 (RunnerState::Done, Did::Pulse) => {

@@ -111,13 +111,26 @@ fn a_rack_thermometer_that_stands_still_unlocks_nothing() {
     it.until_testing();
     it.rig.stuck_c = Some(25.0);
     it.until("judged", |it| it.parts.judged.len() == 3);
-    for _ in 0..600 {
+    it.until("cool air", |it| it.rig.rack_c < 50.0);
+    for _ in 0..3_500 {
         it.run(1_000);
-        let is_hot = it.rig.rack_c >= 50.0;
-        assert!(!(is_hot && it.rig.is_unlocked()), "{}", it.rig.rack_c);
-        assert!(!is_hot || it.batch.needs_closed_door());
+        assert!(!it.rig.is_unlocked() && it.batch.needs_closed_door());
     }
-    assert!(it.rig.is_unlocked());
+    assert!(it.trouble.contains(&Trouble::RackStuck));
+    it.until_unlocked();
+}
+
+#[test]
+fn a_thermometer_that_moves_again_unlocks_the_door() {
+    let mut it = Scenario::ready();
+    it.load(&[1, 2, 3]);
+    it.rig.stuck_c = Some(45.0);
+    it.until("judged", |it| it.parts.judged.len() == 3);
+    it.until("cool air", |it| it.rig.rack_c < 40.0);
+    assert!(!it.rig.is_unlocked());
+    it.rig.stuck_c = None;
+    it.run(5_000);
+    assert!(it.rig.is_unlocked() && it.trouble.is_empty());
 }
 
 #[test]
