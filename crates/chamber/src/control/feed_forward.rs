@@ -1,9 +1,10 @@
 //! Feed-forward with lag: the inverse of an identified chamber, and the gain that it learns on ramps.
 //!
-//! The transfer function of a chamber, from power to temperature, is `K/(tau s + 1) + ki/s`. Its inverse turns the rate
-//! of the set point into power through one lag of `(K + ki tau)/ki`; to this comes the power that balances losses and
-//! fan. On a steady heating ramp the power of the feed-forward over the whole power gives the gain of the present
-//! heater.
+//! The transfer function of a chamber without losses, from power to temperature, is `K/(tau s + 1) + ki/s`. Its inverse
+//! turns the rate of the set point into power through one lag of `(K + ki tau)/ki`; to this comes the power that
+//! balances losses and fan. On a steady heating ramp the power of the feed-forward over the whole power gives the gain
+//! of the present heater, except for what wrong losses explain: insulation that has warmed through loses less than in
+//! the identification.
 
 use super::Task;
 use crate::ramp::SetPoint;
@@ -13,6 +14,9 @@ use crate::tune::Identified;
 const LEAST_S: u32 = 90;
 /// First part of a ramp, which teaches nothing, s.
 const SETTLING_S: u32 = 60;
+/// Part of the identified losses that a chamber may lack on a long ramp: insulation with two equal faces, warm inside,
+/// loses half of what it takes up while it is cold.
+const LESS_LOSS: f64 = 0.5;
 /// Range of the learnt gain.
 const GAINS: [f64; 2] = [0.3, 3.0];
 
@@ -24,6 +28,8 @@ pub struct FeedForward {
     gain: f64,
     lagged: f64,
     last: f64,
+    /// Power that the losses of the chamber would need less than `last` has for them.
+    less: f64,
     lesson: Lesson,
 }
 
@@ -32,6 +38,7 @@ pub struct FeedForward {
 struct Lesson {
     seconds: u32,
     forward: f64,
+    less: f64,
     power: f64,
 }
 
@@ -43,6 +50,7 @@ impl FeedForward {
             gain: 1.0,
             lagged: 0.0,
             last: 0.0,
+            less: 0.0,
             lesson: Lesson::default(),
         }
     }
@@ -58,13 +66,15 @@ impl FeedForward {
         let wanted = (set.rate_k_per_s + it.time_constant_s * set.bend_k_per_s2) / it.slope_k_per_s;
         let lag_s = it.gain_k / it.slope_k_per_s + it.time_constant_s;
         self.lagged += (wanted - self.lagged) / lag_s.max(1.0);
-        let held = it.loss_per_k * (set.value_c - ambient_c) - it.fan;
-        self.last = (self.lagged + held) / self.gain;
+        let lost = it.loss_per_k * (set.value_c - ambient_c);
+        self.last = (self.lagged + lost - it.fan) / self.gain;
+        self.less = LESS_LOSS * lost / self.gain;
         self.last
     }
 
-    /// Takes the power of this second. At the end of a steady heating ramp learns the gain, and returns by how much the
-    /// power of the feed-forward drops, 1 = full heater; returns 0 at any other time.
+    /// Takes the power of this second. At the end of a steady heating ramp learns the gain as far as smaller losses do
+    /// not explain the power, and returns by how much the power of the feed-forward drops, 1 = full heater; returns 0 at
+    /// any other time.
     pub fn learn(&mut self, set: &SetPoint, power: f64, task: &Task) -> f64 {
         let steady =
             set.cruises() && set.rate_k_per_s > 0.0 && power > task.lowest && power < task.highest;
@@ -72,6 +82,7 @@ impl FeedForward {
             self.lesson.seconds += 1;
             if self.lesson.seconds > SETTLING_S {
                 self.lesson.forward += self.last;
+                self.lesson.less += self.less;
                 self.lesson.power += power;
             }
             return 0.0;
@@ -79,13 +90,16 @@ impl FeedForward {
         let Lesson {
             seconds,
             forward,
+            less,
             power,
         } = std::mem::take(&mut self.lesson);
-        if seconds < LEAST_S + SETTLING_S || forward <= 0.0 || power <= 0.0 {
+        let least = forward - less.max(0.0);
+        if seconds < LEAST_S + SETTLING_S || least <= 0.0 || power <= 0.0 {
             return 0.0;
         }
+        let explained = power.clamp(least, forward);
         let before = self.gain;
-        self.gain = (before * forward / power).clamp(GAINS[0], GAINS[1]);
+        self.gain = (before * explained / power).clamp(GAINS[0], GAINS[1]);
         let now = self.last * before / self.gain;
         std::mem::replace(&mut self.last, now) - now
     }

@@ -259,20 +259,27 @@ impl Identification {
         })
     }
 
-    /// Fits the response, and finds losses and fan from the drifts before and after the heat.
-    fn with_losses(&self, response: &[f64], drift: f64, start_c: f64) -> Identified {
-        let parts = fit::two_part(response);
-        let early = fit::first_order(&response[..=FIRST_ORDER_S]);
+    /// Returns the rate at which losses take back a rise, 1/s: the fall of the coast beyond the drift of the rest, per
+    /// kelvin by which the chamber is hotter then.
+    fn return_per_s(&self, drift: f64, start_c: f64) -> f64 {
         let end: usize = LENGTHS_S[..3].iter().sum();
         let coast = &self.readings_c[end - DRIFT_S..=end];
-        let loss_per_k = (drift - slope(coast)) / parts.slope_k_per_s / (mean(coast) - start_c);
+        ((drift - slope(coast)) / (mean(coast) - start_c)).max(0.0)
+    }
+
+    /// Fits the response, and finds losses and fan from the drifts before and after the heat.
+    fn with_losses(&self, response: &[f64], drift: f64, start_c: f64) -> Identified {
+        let return_per_s = self.return_per_s(drift, start_c);
+        let parts = fit::two_part(response, return_per_s);
+        let early = fit::first_order(&response[..=FIRST_ORDER_S]);
+        let loss_per_k = return_per_s / parts.slope_k_per_s;
         let fan = drift / parts.slope_k_per_s + loss_per_k * (start_c - self.ambient_c);
         Identified {
             gain_k: parts.gain_k,
             time_constant_s: parts.time_constant_s,
             delay_s: parts.delay_s,
             slope_k_per_s: parts.slope_k_per_s,
-            loss_per_k: loss_per_k.max(0.0),
+            loss_per_k,
             fan: fan.max(0.0),
             vent_per_k: 0.0,
             first_order: FirstOrder {

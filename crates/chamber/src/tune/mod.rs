@@ -19,7 +19,8 @@ pub struct FirstOrder {
     pub delay_s: f64,
 }
 
-/// Figures of an identification run: the response to power `K/(tau s + 1) + ki/s` after a delay, losses, fan and vent.
+/// Figures of an identification run: the response to power `K/(tau s + 1) + ki/(s + ki loss)` after a delay, fan and
+/// vent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Identified {
     /// Gain `K` of the part that settles, K per unit of power.
@@ -28,7 +29,7 @@ pub struct Identified {
     pub time_constant_s: f64,
     /// Delay, s.
     pub delay_s: f64,
-    /// Slope `ki` of the part that goes on rising, K/s per unit of power.
+    /// First slope `ki` of the part that rises until the losses balance it, K/s per unit of power.
     pub slope_k_per_s: f64,
     /// Power that replaces the losses per kelvin above ambient, 1/K.
     pub loss_per_k: f64,

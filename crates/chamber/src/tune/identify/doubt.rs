@@ -11,7 +11,8 @@ impl Identification {
     /// vent come from slopes of the reading over stretches of some minutes; their uncertainties follow from the noise
     /// of the reading and from the uncertainty of the slope of the model.
     pub fn doubt(&self, found: &Identified) -> Identified {
-        let (response, ..) = self.response();
+        let (response, drift, start_c) = self.response();
+        let return_per_s = self.return_per_s(drift, start_c);
         let parts = fit::TwoPart {
             gain_k: found.gain_k,
             time_constant_s: found.time_constant_s,
@@ -19,7 +20,7 @@ impl Identification {
             slope_k_per_s: found.slope_k_per_s,
         };
         let (parts, early) = (
-            fit::two_part_doubt(&response, &parts),
+            fit::two_part_doubt(&response, &parts, return_per_s),
             fit::first_order_doubt(&response[..=FIRST_ORDER_S], &found.first_order),
         );
         let share = parts.slope_k_per_s / found.slope_k_per_s;
