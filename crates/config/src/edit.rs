@@ -31,7 +31,7 @@ pub(super) fn edited(
         }
         match as_toml(wanted, &field.entry) {
             Some(value) => set(document.as_item_mut(), path, value),
-            None if wanted.is_null() => remove_key(document.as_item_mut(), path),
+            None if wanted.is_null() => remove_key(document.as_item_mut(), &field.removed),
             None => {
                 let fault = Fault::new(
                     path,

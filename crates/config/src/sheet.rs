@@ -21,6 +21,9 @@ pub struct Field {
     pub entry: Entry,
     /// True when the key may be left out.
     pub optional: bool,
+    /// Path to remove when the key is left out: its own, or that of an optional table whose only key it is.
+    #[serde(skip)]
+    pub(super) removed: String,
     /// Value in the file; null when the key is left out.
     pub value: serde_json::Value,
 }
@@ -104,7 +107,11 @@ fn gather(path: &str, keys: &[Key], root: &Node, found: &mut Vec<Field>) {
     for key in keys {
         let path = format!("{path}{}", key.name);
         if let Form::Table(inner) = &key.form {
+            let from = found.len();
             gather(&format!("{path}."), inner, root, found);
+            if let ([_only], true, [field]) = (*inner, key.optional, &mut found[from..]) {
+                (field.optional, field.removed) = (true, path);
+            }
         } else if let Form::List(Form::Table(inner)) = &key.form {
             let items = match root.find(&path) {
                 (
@@ -125,6 +132,7 @@ fn gather(path: &str, keys: &[Key], root: &Node, found: &mut Vec<Field>) {
                 (_, false) => serde_json::Value::Null,
             };
             found.push(Field {
+                removed: path.clone(),
                 path,
                 entry,
                 optional: key.optional,

@@ -17,8 +17,16 @@ fn bench() -> (Copy, Plant) {
 /// Returns a change of one value, based on the newest revision.
 fn change(plant: &Plant, path: &str, value: serde_json::Value) -> Change {
     Change {
-        name: NAME.into(),
         from: revision(&plant.folder, NAME, None).unwrap().hash,
+        ..change_of(path, value)
+    }
+}
+
+/// Returns a change of one value, based on no revision.
+fn change_of(path: &str, value: serde_json::Value) -> Change {
+    Change {
+        name: NAME.into(),
+        from: String::new(),
         reason: "tighter".into(),
         save_as: None,
         values: [(path.to_owned(), value)].into(),
@@ -127,6 +135,30 @@ fn a_refused_revision_names_its_key_and_changes_nothing() {
         assert_eq!(refused.key().as_deref(), Some(key), "{refused}");
     }
     assert_eq!(files(copy.0.path()), before);
+}
+
+#[test]
+fn a_demand_from_outside_comes_and_goes() {
+    let dir = tempfile::tempdir().unwrap();
+    let rig = dir.path().join("rig");
+    crate::init(&rig, "ssr").unwrap();
+    let plant = Plant::load(&rig.as_path().into()).unwrap();
+    let name = "ssr-dc-60v-3a";
+    let revised = |value| {
+        let change = Change {
+            name: name.into(),
+            from: revision(&plant.folder, name, None).unwrap().hash,
+            ..change_of("external.r_iso_ohm.low", value)
+        };
+        revise(&plant, &change).unwrap();
+        let recipe = load_recipe(&plant.folder, name).unwrap();
+        let text = recipe.source_text.clone();
+        (recipe.external.demanded().count(), text)
+    };
+    let (demanded, text) = revised(json!(1e9));
+    assert!(demanded == 1 && text.contains("r_iso_ohm"), "{text}");
+    let (demanded, text) = revised(json!(null));
+    assert!(demanded == 0 && !text.contains("r_iso_ohm"), "{text}");
 }
 
 #[test]
