@@ -19,7 +19,7 @@ pub struct Field {
     /// Values that the key accepts.
     #[serde(flatten)]
     pub entry: Entry,
-    /// True when the key may be left out.
+    /// True when the key may be left out, or the optional table whose only key it is.
     pub optional: bool,
     /// Path to remove when the key is left out: its own, or that of an optional table whose only key it is.
     #[serde(skip)]

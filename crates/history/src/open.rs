@@ -168,6 +168,10 @@ fn connected(path: &Path, flags: OpenFlags) -> rusqlite::Result<Connection> {
     Ok(connection)
 }
 
+/// Page cache of a connection that writes, KiB. It appends rows and seldom reads a page again; a larger cache would go on
+/// filling for thousands of parts.
+const WRITER_CACHE_KIB: i64 = 512;
+
 fn prepare(connection: &Connection, path: &Path) -> Result<()> {
     const DOING: &str = "preparing the history";
     let found = check(connection, path)?;
@@ -179,6 +183,9 @@ fn prepare(connection: &Connection, path: &Path) -> Result<()> {
         .doing(DOING)?;
     connection
         .pragma_update(None, "foreign_keys", true)
+        .doing(DOING)?;
+    connection
+        .pragma_update(None, "cache_size", -WRITER_CACHE_KIB)
         .doing(DOING)?;
     migrate(connection, found)
 }

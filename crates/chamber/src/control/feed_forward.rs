@@ -14,8 +14,8 @@ use crate::tune::Identified;
 const LEAST_S: u32 = 90;
 /// First part of a ramp, which teaches nothing, s.
 const SETTLING_S: u32 = 60;
-/// Part of the identified losses that a chamber may lack on a long ramp: insulation with two equal faces, warm inside,
-/// loses half of what it takes up while it is cold.
+/// Share of the identified losses that vanishes once the insulation is warm: with two equal faces it then loses half of
+/// what it takes up while it is cold.
 const LESS_LOSS: f64 = 0.5;
 /// Range of the learnt gain.
 const GAINS: [f64; 2] = [0.3, 3.0];
@@ -28,7 +28,7 @@ pub struct FeedForward {
     gain: f64,
     lagged: f64,
     last: f64,
-    /// Power that the losses of the chamber would need less than `last` has for them.
+    /// Part of `last` that smaller losses would save.
     less: f64,
     lesson: Lesson,
 }
@@ -72,9 +72,10 @@ impl FeedForward {
         self.last
     }
 
-    /// Takes the power of this second. At the end of a steady heating ramp learns the gain as far as smaller losses do
-    /// not explain the power, and returns by how much the power of the feed-forward drops, 1 = full heater; returns 0 at
-    /// any other time.
+    /// Takes the power of this second. At the end of a steady heating ramp learns the gain: the one nearest to 1 that,
+    /// with the identified losses or smaller ones, explains the power. Returns by how much the power of the feed-forward
+    /// drops, 1 = full heater; returns 0 at any other time. A ramp so slow that smaller losses alone explain its power
+    /// teaches nothing.
     pub fn learn(&mut self, set: &SetPoint, power: f64, task: &Task) -> f64 {
         let steady =
             set.cruises() && set.rate_k_per_s > 0.0 && power > task.lowest && power < task.highest;
@@ -94,12 +95,13 @@ impl FeedForward {
             power,
         } = std::mem::take(&mut self.lesson);
         let least = forward - less.max(0.0);
-        if seconds < LEAST_S + SETTLING_S || least <= 0.0 || power <= 0.0 {
+        let is_telling = least > 0.0 && power > 0.0;
+        if seconds < LEAST_S + SETTLING_S || !is_telling {
             return 0.0;
         }
-        let explained = power.clamp(least, forward);
         let before = self.gain;
-        self.gain = (before * explained / power).clamp(GAINS[0], GAINS[1]);
+        let nearest = 1_f64.clamp(before * least / power, before * forward / power);
+        self.gain = nearest.clamp(GAINS[0], GAINS[1]);
         let now = self.last * before / self.gain;
         std::mem::replace(&mut self.last, now) - now
     }

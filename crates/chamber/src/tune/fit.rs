@@ -26,7 +26,7 @@ pub struct TwoPart {
 
 /// Returns the time, s, for which the rising part would have risen at its first slope; `return_per_s`: rate at which
 /// the losses take back a rise, 1/s. Without losses this is the time itself.
-fn risen(after_s: f64, return_per_s: f64) -> f64 {
+pub(super) fn risen(after_s: f64, return_per_s: f64) -> f64 {
     let share = return_per_s * after_s;
     match share > 1e-9 {
         true => -(-share).exp_m1() / return_per_s,
@@ -35,7 +35,7 @@ fn risen(after_s: f64, return_per_s: f64) -> f64 {
 }
 
 /// Fits both parts to a response, K per unit of power, of a chamber whose losses take back a rise at `return_per_s`,
-/// 1/s. Without them the slope would come out too small: at a usual chamber by an eighth.
+/// 1/s. Without them the slope of a usual chamber comes out a tenth too small.
 pub fn two_part(response: &[f64], return_per_s: f64) -> TwoPart {
     let linear = |time_constant_s: f64, delay_s: f64| {
         let basis = |second: usize| {

@@ -30,6 +30,9 @@ const FIRST_ORDER_S: usize = 120;
 const LEAST_DELAY: f64 = 0.65;
 /// Least delay of the first-order model, s: sampling and the filter of the derivative.
 const LEAST_DELAY_S: f64 = 4.2;
+/// Greatest rate at which losses take back a rise, 1/s: with a greater one the fit could not tell both parts of the
+/// response from each other.
+const MOST_RETURN_PER_S: f64 = 1.0 / 300.0;
 /// Least rise of the heat stage, K.
 const LEAST_RISE_K: f64 = 3.0;
 /// Least rise of a later minute of the heat stage, beyond the drift, K: less shows a heater that has broken.
@@ -215,8 +218,11 @@ impl Identification {
         let [rest, heat, ..] = LENGTHS_S;
         let drift = slope(&self.readings_c[rest - DRIFT_S..=rest]);
         let start_c = mean(&self.readings_c[rest - 4..=rest]) + 2.0 * drift;
-        let rise =
-            |(second, found): (usize, &f64)| (found - start_c - drift * second as f64) / self.power;
+        let return_per_s = self.return_per_s(drift, start_c);
+        let rise = |(second, found): (usize, &f64)| {
+            let drifted_k = drift * fit::risen(second as f64, return_per_s);
+            (found - start_c - drifted_k) / self.power
+        };
         let heated = self.readings_c[rest..=rest + heat].iter().enumerate();
         (heated.map(rise).collect(), drift, start_c)
     }
@@ -260,11 +266,12 @@ impl Identification {
     }
 
     /// Returns the rate at which losses take back a rise, 1/s: the fall of the coast beyond the drift of the rest, per
-    /// kelvin by which the chamber is hotter then.
+    /// kelvin by which the chamber is hotter then; [`MOST_RETURN_PER_S`] at most.
     fn return_per_s(&self, drift: f64, start_c: f64) -> f64 {
         let end: usize = LENGTHS_S[..3].iter().sum();
         let coast = &self.readings_c[end - DRIFT_S..=end];
-        ((drift - slope(coast)) / (mean(coast) - start_c)).max(0.0)
+        let return_per_s = (drift - slope(coast)) / (mean(coast) - start_c);
+        return_per_s.clamp(0.0, MOST_RETURN_PER_S)
     }
 
     /// Fits the response, and finds losses and fan from the drifts before and after the heat.

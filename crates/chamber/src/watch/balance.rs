@@ -2,8 +2,8 @@
 //! power.
 //!
 //! An identification counts as loss what cold walls and insulation take up. After some batches they are warm and take up
-//! less, which the learnt gain of the heater covers in part. So the balance accepts any slope between those of three models:
-//! the identified one, the same with the learnt gain, and the same without losses.
+//! less. So the balance accepts any slope between those of three models: the identified one, the same with the learnt gain,
+//! and the same without losses.
 
 use super::lasting::{Lasting, Recent};
 use super::{Second, Trouble};

@@ -53,7 +53,7 @@ pub enum Trouble {
     DoorNotLocked,
     /// The thermometer in the rack has had no usable reading for too long.
     RackUnread,
-    /// The thermometer in the rack stands still while the air moves.
+    /// The reading of the thermometer in the rack stands still while the temperature of the air changes.
     RackStuck,
     /// The rack has not cooled within this time; it goes on cooling.
     CoolsSlowly(Span),

@@ -142,8 +142,9 @@ codes! {
     DoorNotLocked = "door_not_locked", Abort, Operator;
     /// The thermometer in the rack has had no usable reading for too long; the door stays locked.
     RackUnread = "rack_unread", Abort, Operator;
-    /// The thermometer in the rack stands still while the air moves; the door stays locked.
-    RackStuck = "rack_stuck", Hold, Operator;
+    /// The reading of the thermometer in the rack stands still while the temperature of the air changes; the door stays
+    /// locked.
+    RackStuck = "rack_stuck", Nothing, Operator;
     /// The rack has not cooled in time; it goes on cooling behind the locked door.
     CoolsSlowly = "cools_slowly", Nothing, Itself;
     /// A thermometer of the air has no usable reading.

@@ -14,8 +14,9 @@
 //! out its parts and confirms it; without a screen, an opened door and open contacts confirm it. Loading begins again
 //! only when every contact is open, so that no old part passes for a new one.
 //!
-//! Troubles: the door does not lock, the rack has no temperature or its thermometer is stuck, it cools too slowly, the test takes too long or has
-//! met trouble of the rig, no contact is closed in a rack that was loaded without a screen.
+//! Troubles: the door does not lock, the rack has no temperature or its reading does not follow the air, the rack cools
+//! too slowly, the test takes too long or has met trouble of the rig, no contact is closed in a rack that was loaded
+//! without a screen.
 //!
 //! After safe outputs or a restart: a rack without a reading counts as hot. [`Batch::home`] cools it, the door locked.
 //! Then parts of an interrupted batch leave by the list for retest, and parts of an earlier run without a list.
@@ -233,6 +234,7 @@ impl Batch {
             | Phase::Cooling { .. }
             | Phase::Unloading(_) => self.watch.cut_off(&self.rack),
         };
+        self.trust.pause();
         self.phase = Phase::Cooling {
             since: now,
             reported: false,
@@ -321,7 +323,7 @@ impl Batch {
             }
             Phase::Cooling { since, reported } => {
                 let took = turn.now.since(*since);
-                if !*reported && took > COOLS {
+                if !*reported && took > COOLS && !self.trust.is_in_doubt() {
                     *reported = true;
                     turn.trouble.push(Trouble::CoolsSlowly(COOLS));
                 }
@@ -404,7 +406,7 @@ impl Batch {
     }
 
     /// Sets lock and lamps. The door is unlocked only while a person works at the rack, and only when the last
-    /// temperature of the rack is fresh and below its limit.
+    /// temperature of the rack is fresh, below its limit and not in doubt.
     fn show(&mut self, turn: &mut BatchTurn) {
         let is_cool = self.watch.is_cool(&self.trust, turn);
         let (loads, unloads) = match &self.phase {

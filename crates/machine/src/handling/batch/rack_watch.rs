@@ -19,6 +19,9 @@ const PERIOD: Span = Span::ms(1_000);
 const FRESH: Span = Span::ms(5_000);
 /// Time without a usable reading after which the watch reports trouble.
 const SILENT: Span = Span::ms(20_000);
+/// Distance of cool surroundings from the limit while the reading of the rack is in doubt, K: a slow rack may still be
+/// some kelvin warmer than the air.
+const SURELY_K: f64 = 10.0;
 /// A rack that was cool counts as hot only when it warms by this above the limit, so that noise does not move the lock.
 const HYSTERESIS_K: f64 = 1.0;
 
@@ -171,16 +174,17 @@ impl RackWatch {
     }
 
     /// Returns true when a thermometer in the air has a fresh reading, or the rig has none there, and neither there nor on
-    /// a surface that gives off heat a fresh reading is at the limit or above.
-    fn are_surroundings_cool(&self, turn: &BatchTurn) -> bool {
+    /// a surface that gives off heat a fresh reading is at the limit less a margin, or above.
+    fn are_surroundings_cool(&self, margin_k: f64, turn: &BatchTurn) -> bool {
         let of_air = turn.device.air_thermometers();
         let is_bare = of_air.is_empty();
         let (air, surfaces) = (fresh(turn, of_air), fresh(turn, turn.device.hot_surfaces()));
         let mut all = air.iter().chain(&surfaces);
-        (is_bare || !air.is_empty()) && all.all(|it| *it < self.unlock_below.0)
+        (is_bare || !air.is_empty()) && all.all(|it| *it < self.unlock_below.0 - margin_k)
     }
 
-    /// Compares the thermometer in the rack with those in the air, also during a test; reports one that stands still.
+    /// Compares the thermometer in the rack with those in the air, also during a test; reports a doubt that lasts. A rig
+    /// without a thermometer in the air compares nothing.
     pub fn compare(&self, trust: &mut RackTrust, turn: &mut BatchTurn) {
         let rack = fresh(turn, vec![self.thermometer]);
         let air = fresh(turn, turn.device.air_thermometers());
@@ -192,7 +196,7 @@ impl RackWatch {
         let readings = Readings {
             rack_c: *rack_c,
             air_c: [low_c, high_c],
-            are_surroundings_cool: self.are_surroundings_cool(turn),
+            are_surroundings_cool: self.are_surroundings_cool(SURELY_K, turn),
         };
         if trust.step(turn.now, &readings) {
             turn.trouble.push(Trouble::RackStuck);
@@ -213,7 +217,7 @@ impl RackWatch {
         let was_cool = self.heat == Heat::Cool;
         let is_below = value < self.unlock_below.0 + margin_k
             && !trust.is_in_doubt()
-            && (was_cool || self.are_surroundings_cool(turn));
+            && (was_cool || self.are_surroundings_cool(0.0, turn));
         if !is_below {
             self.heat = Heat::Hot;
         } else if is_fresh {

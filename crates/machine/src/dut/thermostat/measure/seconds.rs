@@ -161,7 +161,7 @@ impl Seconds {
                     Err(found) => return Advance::Ended(Ended::Found(found)),
                 },
                 (RunnerState::Done, Did::Set) => {
-                    let others = [device.points.rack, device.points.surface].into_iter();
+                    let others = [device.points.surface, device.points.rack].into_iter();
                     let read = |it| Act::Read(Read::points([Point::Temperature(it)]));
                     let acts = others.flatten().map(read).collect();
                     self.doing = Doing::Others(Runner::new(acts, now));
