@@ -533,7 +533,6 @@ interruption-supply_range = coil supply in another range
 interruption-socket_live = socket not proven discharged
 interruption-door_not_locked = rack door not locked
 interruption-rack_unread = rack temperature not read
-interruption-rack_stuck = rack thermometer stuck
 interruption-thermometer_broken = thermometer broken
 interruption-thermometer_jump = thermometer jumped
 interruption-thermometers_differ = thermometers disagree

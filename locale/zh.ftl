@@ -504,7 +504,6 @@ interruption-supply_range = 线圈电源处于其他量程
 interruption-socket_live = 未能证明插座已放电
 interruption-door_not_locked = 料架门未锁
 interruption-rack_unread = 料架温度读不到
-interruption-rack_stuck = 料架温度计读数不动
 interruption-thermometer_broken = 温度计损坏
 interruption-thermometer_jump = 温度计跳变
 interruption-thermometers_differ = 温度计不一致

@@ -55,6 +55,10 @@ const OPENING: &str = "opening the history";
 /// Longest wait for a file that another process has locked; longer than any batch takes.
 const BUSY: Duration = Duration::from_secs(5);
 
+/// Page cache of a connection that writes, KiB. It appends rows and seldom reads a page again; a larger cache would go on
+/// filling for thousands of parts.
+const WRITER_CACHE_KIB: i64 = 512;
+
 /// Opens a file for writing; creates it if it is missing.
 pub(super) fn writer(path: &Path) -> Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
@@ -167,10 +171,6 @@ fn connected(path: &Path, flags: OpenFlags) -> rusqlite::Result<Connection> {
     connection.set_prepared_statement_cache_capacity(64);
     Ok(connection)
 }
-
-/// Page cache of a connection that writes, KiB. It appends rows and seldom reads a page again; a larger cache would go on
-/// filling for thousands of parts.
-const WRITER_CACHE_KIB: i64 = 512;
 
 fn prepare(connection: &Connection, path: &Path) -> Result<()> {
     const DOING: &str = "preparing the history";

@@ -180,14 +180,11 @@ mod tests {
         for return_per_s in [0.0, 6e-4] {
             let made = |second: i32| {
                 let after = (f64::from(second) - 6.7).max(0.0);
-                let fast_k = 30.6 * (1.0 - (-after / 21.9).exp());
-                let losing = 0.264 / 6e-4 * (1.0 - (-6e-4 * after).exp());
-                fast_k
-                    + if return_per_s > 0.0 {
-                        losing
-                    } else {
-                        0.264 * after
-                    }
+                let risen_s = match return_per_s > 0.0 {
+                    true => (1.0 - (-return_per_s * after).exp()) / return_per_s,
+                    false => after,
+                };
+                30.6 * (1.0 - (-after / 21.9).exp()) + 0.264 * risen_s
             };
             let response: Vec<f64> = (0..420).map(made).collect();
             let found = two_part(&response, return_per_s);

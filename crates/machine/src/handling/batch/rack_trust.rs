@@ -98,6 +98,9 @@ impl RackTrust {
         self.stepped_at = Some(now);
         let is_first = self.from.is_none();
         let from = *self.from.get_or_insert(*readings);
+        if is_gap {
+            self.follows_since = None;
+        }
         if self.has_followed(now, &from, readings) {
             *self = Self {
                 from: Some(*readings),

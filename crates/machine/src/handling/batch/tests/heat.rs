@@ -5,11 +5,16 @@ use crate::dut::batch::{BatchTrouble, HeatTrouble};
 use crate::handling::batch::Phase;
 use crate::handling::trouble::Trouble;
 
-/// Returns a scenario whose outputs are made safe in the test, while the rack is hot.
+/// Returns a scenario whose outputs are made safe in the test, once the rack is hot.
 fn cut_off() -> Scenario {
+    cut_off_above(60.0)
+}
+
+/// Returns a scenario whose outputs are made safe in the test, once the rack is warmer than this, C.
+fn cut_off_above(rack_c: f64) -> Scenario {
     let mut it = Scenario::ready();
     it.load(&[1, 2, 3]);
-    it.until("hot", |it| it.rig.rack_c > 60.0);
+    it.until("warm", |it| it.rig.rack_c > rack_c);
     for part in it.rig.ledger.held_mut() {
         part.interrupt("emergency_stop");
         part.bin = Some(crate::rig::bin::Bin::RETEST);
@@ -122,16 +127,7 @@ fn a_rack_thermometer_that_stands_still_unlocks_nothing() {
 
 #[test]
 fn a_stop_early_in_the_heat_locks_no_cool_rack() {
-    let mut it = Scenario::ready();
-    it.load(&[1, 2, 3]);
-    it.until("warm", |it| it.rig.rack_c > 32.0);
-    for part in it.rig.ledger.held_mut() {
-        part.interrupt("emergency_stop");
-        part.bin = Some(crate::rig::bin::Bin::RETEST);
-    }
-    it.recorded = 3;
-    it.rig.everything_off();
-    it.batch.cut_off(it.rig.now);
+    let mut it = cut_off_above(32.0);
     it.rig.pass(units::Span::ms(600_000));
     it.batch.begin_home(it.rig.now, &it.rig.device);
     it.homing = true;
