@@ -173,12 +173,13 @@ pub fn block_on<T>(
 
 /// Creates a runtime of one thread for runs on `source`. In virtual time the runtime's clock is paused and its I/O
 /// driver is off: a rig in this process has no file or socket, and the driver would call the kernel at each step of the
-/// clock.
+/// clock. One blocking thread writes the history: each thread that SQLite works on keeps memory of its own.
 ///
 /// # Errors
 /// Fails when the operating system refuses the runtime.
 pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
     let mut builder = tokio::runtime::Builder::new_current_thread();
+    builder.max_blocking_threads(1);
     #[cfg(feature = "sim")]
     if source.is_virtual() {
         let built = builder.enable_time().start_paused(true).build();
