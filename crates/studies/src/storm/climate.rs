@@ -7,8 +7,8 @@ use machine::rig::wiring::Wiring;
 /// What a storm over a kind of part draws from.
 #[derive(Debug, Clone, Copy)]
 pub struct Climate {
-    /// Keys of the world that differ from the default: more defects, so that parts go to every bin.
-    pub world: &'static str,
+    /// Tables of the world that differ from the default: more defects, so that parts go to every bin.
+    defects: &'static str,
     /// True when the rig is calibrated before its lots.
     pub calibrates: bool,
     /// Faults of the output circuit, which begin at an instant and last `fault_hold_ms`.
@@ -19,7 +19,7 @@ pub struct Climate {
 
 /// Storms over electromagnetic relays.
 const RELAYS: Climate = Climate {
-    world: "[defects]\nrate_pct = 25.0\n\n[mechanism]\nfault_hold_ms = 3000.0\n",
+    defects: "[defects]\nrate_pct = 25.0\n",
     calibrates: true,
     circuit: &[],
     of_an_instrument: &[],
@@ -27,7 +27,7 @@ const RELAYS: Climate = Climate {
 
 /// Storms over solid-state relays.
 const SOLID_STATE: Climate = Climate {
-    world: "[ssr.defects]\nrate_pct = 25.0\n\n[ssr_ac.defects]\nrate_pct = 25.0\n\n[mechanism]\nfault_hold_ms = 3000.0\n",
+    defects: "[ssr.defects]\nrate_pct = 25.0\n\n[ssr_ac.defects]\nrate_pct = 25.0\n",
     calibrates: false,
     circuit: &[
         "line_contactor_welded",
@@ -73,6 +73,15 @@ impl Climate {
             Kind::Ssr => SOLID_STATE,
             Kind::EmRelay | Kind::Resistor | Kind::Thermostat => RELAYS,
         }
+    }
+
+    /// Returns the text of the world in which a fault that begins at an instant lasts `hold_us` microseconds.
+    pub fn world(&self, hold_us: u64) -> String {
+        let hold_ms = hold_us as f64 * 1e-3;
+        format!(
+            "{}\n[mechanism]\nfault_hold_ms = {hold_ms:.3}\n",
+            self.defects
+        )
     }
 
     /// Returns true when the rig has instruments or contactors of its own.

@@ -30,8 +30,8 @@ use life::{End, Runner};
 use machine::dut::Calibration;
 use report::{Counts, Outcome, report};
 use rigsim::{Options, SharedRig};
-use scenario::{CEASES_US, Life, RIGS, Scenario};
-use std::path::Path;
+use scenario::{CEASES_US, LONG_US, Life, RIGS, Scenario};
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Instant;
 use tempfile::TempDir;
@@ -73,7 +73,6 @@ impl<'a> Storm<'a> {
     fn new(order: &'a Order) -> anyhow::Result<Self> {
         let folder = TempDir::new()?;
         let climate = Climate::of(order.recipe.device.kind());
-        std::fs::write(folder.path().join("world.toml"), climate.world)?;
         Ok(Self {
             order,
             plant: Plant::load(&order.folder())?,
@@ -114,7 +113,12 @@ impl<'a> Storm<'a> {
     fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
         let wiring = &self.plant.wiring;
         let scenario = Scenario::of(seed, self.order.parts, wiring, &self.climate);
-        let rig = self.rig(scenario.rig, scenario.uncalibrated, &scenario.faults)?;
+        let rig = self.rig(
+            scenario.rig,
+            scenario.uncalibrated,
+            &scenario.faults,
+            self.world(scenario.hold_us, db)?,
+        )?;
         let runner = self.runner(&rig, db);
         let needs = self.climate.calibrates;
         let mut calibration = match scenario.uncalibrated || !needs {
@@ -168,6 +172,7 @@ impl<'a> Storm<'a> {
             touched: rig.crashes(),
             overdrives: rig.overdrives(),
             contact_moves: rig.contact_moves(),
+            hold_us: scenario.hold_us,
             welded_us: scenario.welded_us.clone(),
             watchdog,
             rows: archive.query(&all)?,
@@ -190,16 +195,26 @@ impl<'a> Storm<'a> {
         }
     }
 
+    /// Returns the file of the world; without one in the order, writes it beside `db`, with faults of `hold_us`.
+    fn world(&self, hold_us: u64, db: &Path) -> anyhow::Result<PathBuf> {
+        if let Some(ordered) = &self.order.world {
+            return Ok(ordered.clone());
+        }
+        let world = db.with_file_name("world.toml");
+        std::fs::write(&world, self.climate.world(hold_us))?;
+        Ok(world)
+    }
+
     fn rig(
         &self,
         seed: u64,
         reference_parts: bool,
         faults: &[String],
+        world: PathBuf,
     ) -> anyhow::Result<SharedRig> {
-        let storms = self.folder.path().join("world.toml");
         Ok(rigsim::build(&Options {
             files: self.order.config.as_path().into(),
-            world: Some(self.order.world.clone().unwrap_or(storms)),
+            world: Some(world),
             seed,
             recipe: self.order.recipe.name.clone(),
             parts: None,
@@ -214,7 +229,7 @@ impl<'a> Storm<'a> {
         if let Some(known) = self.calibrations[place].get() {
             return Ok(known.clone());
         }
-        let calm = self.rig(rig, true, &[])?;
+        let calm = self.rig(rig, true, &[], self.world(LONG_US, db)?)?;
         let apart = db.with_file_name("calibration.db");
         let found = self.runner(&calm, &apart).calibrated()?;
         Ok(self.calibrations[place].get_or_init(|| found).clone())

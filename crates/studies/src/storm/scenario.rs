@@ -12,8 +12,11 @@ use machine::rig::wiring::Wiring;
 pub const RIGS: u64 = 8;
 /// End of all faults, microseconds of rig time.
 pub const CEASES_US: u64 = 16_000_000;
-/// Duration of a disturbance of door, emergency stop or air, microseconds: `fault_hold_ms` of [`Climate::world`].
-pub const DISTURBED_US: u64 = 3_000_000;
+/// Duration of a long fault of door, emergency stop, air or circuit, microseconds.
+pub const LONG_US: u64 = 3_000_000;
+/// Durations of short faults of these, microseconds: from a break that one reading sees to one as long as a stage of a
+/// test.
+const SHORT_US: (u64, u64) = (500, 200_000);
 
 /// Faults that happen once, at the part with the drawn number.
 const AT_A_PART: [&str; 10] = [
@@ -69,9 +72,11 @@ pub struct Scenario {
     pub uncalibrated: bool,
     /// Faults of the simulated rig, in the form of `--fault`.
     pub faults: Vec<String>,
+    /// Duration of the faults that begin at an instant, microseconds: [`LONG_US`], or in one storm of three a short one.
+    pub hold_us: u64,
     /// Instants at which a safety input is disturbed, microseconds.
     pub disturbed_us: Vec<u64>,
-    /// Instants from which a contactor stays closed once it is closed, for [`DISTURBED_US`], microseconds.
+    /// Instants from which a contactor stays closed once it is closed, for `hold_us`, microseconds.
     pub welded_us: Vec<u64>,
     /// Whether a line may be deaf or slow for a while: outputs then stay on until the watchdogs of their modules
     /// expire.
@@ -92,6 +97,7 @@ impl Scenario {
             rig: 1 + seed % RIGS,
             uncalibrated,
             faults: vec![format!("parts_seed={}", seed % (1 << 40))],
+            hold_us: LONG_US,
             disturbed_us: Vec::new(),
             welded_us: Vec::new(),
             lines_disturbed: false,
@@ -111,12 +117,15 @@ impl Scenario {
         if climate.is_of_circuits() {
             scenario.add_circuit_faults(&mut dice, wiring, climate);
         }
+        if dice.once_in(3) {
+            scenario.hold_us = dice.between(SHORT_US.0, SHORT_US.1);
+        }
         scenario
     }
 
     fn add_circuit_faults(&mut self, dice: &mut Dice, wiring: &Wiring, climate: &Climate) {
         for _ in 0..dice.below(3) {
-            let at_us = dice.between(0, CEASES_US - DISTURBED_US);
+            let at_us = dice.between(0, CEASES_US - LONG_US);
             let fault = climate.circuit_fault(dice);
             if self.faults.iter().any(|it| it.starts_with(fault)) {
                 continue;
@@ -138,7 +147,7 @@ impl Scenario {
 
     fn add_world_fault(&mut self, dice: &mut Dice) {
         if dice.once_in(3) {
-            let at_us = dice.between(0, CEASES_US - DISTURBED_US);
+            let at_us = dice.between(0, CEASES_US - LONG_US);
             let fault = *dice.one(&SAFETY);
             // Two overlapping disturbances of one input would both end when the first one ends.
             if self.faults.iter().any(|it| it.starts_with(fault)) {

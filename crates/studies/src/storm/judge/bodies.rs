@@ -120,14 +120,16 @@ fn recorded_twice(rows: &[&Part]) -> Option<String> {
 fn misplaced(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     let (at_us, place) = body.path.last()?;
     let landed = rows.iter().find_map(|row| row.landed_bin.as_deref());
+    // A run that ends while the fingers open raises its alarm before the body falls.
+    let opened_us = let_go_us(body).saturating_sub(OPENING_US);
     match place {
-        Place::Bin(bin) if body.clung => (!is_counted(case, let_go_us(body), bin)).then(|| {
+        Place::Bin(bin) if body.clung => (!is_counted(case, opened_us, bin)).then(|| {
             format!(
                 "came into {bin} with another one at {} and no alarm declares it",
                 seconds(*at_us)
             )
         }),
-        Place::Bin(bin) => in_a_bin(case, (let_go_us(body), *at_us), bin, rows),
+        Place::Bin(bin) => in_a_bin(case, (opened_us, *at_us), bin, rows),
         Place::Floor if landed.is_some() => Some(format!(
             "lies on the floor since {}, its row says {landed:?}",
             seconds(*at_us)
@@ -155,7 +157,7 @@ fn let_go_us(body: &BodyTruth) -> u64 {
 
 fn in_a_bin(
     case: &Case,
-    (let_go_us, at_us): (u64, u64),
+    (opened_us, at_us): (u64, u64),
     bin: &str,
     rows: &[&Part],
 ) -> Option<String> {
@@ -176,7 +178,7 @@ fn in_a_bin(
     match row.landed_bin.as_deref() {
         Some(seen) if seen == bin => None,
         Some(seen) => Some(format!("lies in {bin}, was seen in {seen}")),
-        None if is_declared(case, let_go_us.saturating_sub(OPENING_US)) => None,
+        None if is_declared(case, opened_us) => None,
         None => Some(format!(
             "lies in {bin} since {}, its row has no landing",
             seconds(at_us)

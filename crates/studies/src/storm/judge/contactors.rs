@@ -2,7 +2,6 @@
 //! reaction of the rig to a safety input. A contactor that a fault has welded may open later, when the fault ends.
 
 use super::{Case, seconds};
-use crate::storm::scenario::DISTURBED_US;
 use std::ops::Range;
 
 /// Longest time from a coil without current to open main contacts, microseconds.
@@ -49,7 +48,7 @@ fn closed(case: &Case) -> Vec<Closed> {
 /// Returns true when a contactor that was closed in a time in which it had to be open was welded at the begin of that time,
 /// and has opened after its fault.
 fn is_welded(case: &Case, closed: &Closed, open: &Range<u64>) -> bool {
-    let ends_us = |at_us: u64| at_us + DISTURBED_US + RELEASE_US;
+    let ends_us = |at_us: u64| at_us + case.hold_us + RELEASE_US;
     let explains =
         |at_us: &u64| *at_us < open.start.max(closed.us.start) && closed.us.end <= ends_us(*at_us);
     case.welded_us.iter().any(explains)
@@ -64,7 +63,7 @@ fn must_be_open(case: &Case) -> Vec<(Range<u64>, String)> {
     let disturbed = case.disturbed_us.iter().map(|at_us| {
         let from_us = at_us + reaction.0 + RELEASE_US;
         let why = format!("while a safety input was open since {}", seconds(*at_us));
-        (from_us..at_us + DISTURBED_US, why)
+        (from_us..at_us + case.hold_us, why)
     });
     let lives = case.lives.iter().enumerate().map(|(number, life)| {
         let next_us = case

@@ -40,6 +40,8 @@ pub struct Case {
     pub overdrives: Vec<Overdrive>,
     /// Moves of the main contacts of contactors.
     pub contact_moves: Vec<ContactMove>,
+    /// Duration of the faults that begin at an instant, microseconds.
+    pub hold_us: u64,
     /// Instants from which a contactor stayed closed once it was closed.
     pub welded_us: Vec<u64>,
     /// Time within which the host watchdog switches the outputs off.

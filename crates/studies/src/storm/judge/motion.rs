@@ -3,7 +3,6 @@
 
 use super::{Case, seconds};
 use crate::storm::life::End;
-use crate::storm::scenario::DISTURBED_US;
 use std::ops::Range;
 
 /// An interval in which no driven motion may begin, microseconds, and the reason why.
@@ -35,7 +34,7 @@ fn still_intervals(case: &Case) -> Vec<StillInterval> {
     let mut still_intervals = Vec::new();
     for at_us in &case.disturbed_us {
         still_intervals.push(StillInterval {
-            us: at_us + reaction.0..at_us + DISTURBED_US,
+            us: at_us + reaction.0..at_us + case.hold_us,
             why: format!("while a safety input was open since {}", seconds(*at_us)),
         });
     }

@@ -132,6 +132,7 @@ fn sound() -> Case {
             (40 * S, true),
             (41 * S, false),
         ]),
+        hold_us: 3 * S,
         welded_us: Vec::new(),
         watchdog: Span::ms(1_000),
         rows: vec![
@@ -315,6 +316,22 @@ fn a_second_body_without_a_beam_alarm_is_found() {
         one.args = one.args.with("bin", bin);
         case.alarms.insert(0, one);
         assert_eq!(case.violations().is_empty(), is_reported, "{bin}");
+    }
+}
+
+#[test]
+fn an_alarm_while_the_fingers_open_declares_both_bodies() {
+    for (opening_us, is_declared) in [(200_000, true), (400_000, false)] {
+        let mut case = sound();
+        let mut second = body(&way(1, Place::Bin("pass".into())), None);
+        second.clung = true;
+        let fell_us = 5 * S + opening_us;
+        second.path.insert(3, (fell_us, Place::Air));
+        case.bodies.insert(1, second);
+        let mut one = alarm("one", "bin_beam", 5);
+        one.args = one.args.with("bin", "pass");
+        case.alarms.insert(0, one);
+        assert_eq!(case.violations().is_empty(), is_declared, "{opening_us} us");
     }
 }
 
