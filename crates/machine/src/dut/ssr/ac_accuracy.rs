@@ -4,7 +4,7 @@
 use super::ac_plan::{
     AcPlan, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM, LOOP_SHUNT_OHM, SHUNT_ERROR,
 };
-use super::accuracy::{COLD, WARMED};
+use super::accuracy::{COLD, WARMED, self_heating};
 use super::measure::line::leakage::Leak;
 use super::measure::line::looped::{Distorted, OnState};
 use super::measure::line::references::REFERENCE_OHM;
@@ -68,16 +68,24 @@ fn gain(ac: &AcPlan, is_referenced: bool) -> f64 {
 /// Returns the budget of a leakage or a part of it, microamperes. A delay between the channels makes some of the
 /// capacitive part look resistive.
 pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> Budget {
-    let (_, capacitive_a) = leak.split_a(ac);
+    let (resistive_a, capacitive_a) = leak.split_a(ac);
     let (whole_a, ua) = (leak.rms_a(ac), 1e-6);
     let turned_a = |delay_s: f64| match part {
         LeakageOf::Resistive => TAU * ac.mains_hz * delay_s * capacitive_a,
         LeakageOf::Whole | LeakageOf::Capacitive => 0.0,
     };
+    let heated_a = match part {
+        LeakageOf::Resistive => resistive_a,
+        // The share of the resistive part in the whole.
+        LeakageOf::Whole => resistive_a * resistive_a / whole_a.max(f64::MIN_POSITIVE),
+        LeakageOf::Capacitive => 0.0,
+    };
+    let heated_a = heated_a * self_heating(ac.mains_v, resistive_a);
     let scales = ac.leakage();
     let shown_v = SQRT_2 * whole_a * LINE_SHUNT_OHM;
     let budget = Budget::default()
         .with_bounds("linearity", bent(scales.shunt_v, shown_v) * value_a / ua)
+        .with_bounds("self-heating", heated_a / ua)
         .with_random("noise", leak.noise_a / ua);
     let Some(doubt) = leak.referenced else {
         let gain = gain(ac, false);

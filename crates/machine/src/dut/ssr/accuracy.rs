@@ -18,6 +18,17 @@ const APART: f64 = 2.4;
 /// Averaging time of the reading that shows whether a leakage has settled, periods of the mains.
 const BRIEF: f64 = 0.1;
 
+/// Growth of the leakage of a junction with its temperature: twice the current each ten kelvin.
+const LEAKAGE_PER_K: f64 = 0.07;
+/// Greatest thermal resistance between junction and case of a power switch of a few amperes, K/W.
+const JUNCTION_K_PER_W: f64 = 3.0;
+
+/// Returns the share by which a leakage may read too high because it heats its own junction; `volts` and `ampere`: rms of
+/// the voltage at the output, and of the current in phase with it.
+pub fn self_heating(volts: f64, ampere: f64) -> f64 {
+    LEAKAGE_PER_K * JUNCTION_K_PER_W * (volts * ampere).abs()
+}
+
 /// Returns the standard uncertainty of an applied or measured value, in its unit: gain and offset, without noise.
 pub fn applied_u(accuracy: &Accuracy, value: f64) -> f64 {
     rectangular(accuracy.gain(value)).hypot(rectangular(accuracy.offset))
@@ -50,9 +61,11 @@ pub fn leakage(
     is_referenced: bool,
 ) -> Budget {
     let share = (range.source.gain(volts) + range.source.offset) / volts;
+    let heated = self_heating(volts, ampere) * ampere / 1e-6;
     if !is_referenced {
-        let budget = current(range, ampere, moved, 1e-6);
-        return budget.with_bounds("source", share * ampere / 1e-6);
+        return current(range, ampere, moved, 1e-6)
+            .with_bounds("source", share * ampere / 1e-6)
+            .with_bounds("self-heating", heated);
     }
     let noise_a = range.meter.noise_over(range.periods);
     // The first of both readings is short and noisy.
@@ -61,6 +74,7 @@ pub fn leakage(
         .with_bounds("gain", range.meter.gain(ampere) / 1e-6)
         .with_bounds("source", share * ampere / 1e-6)
         .with_bounds("settling", moved / 1e-6)
+        .with_bounds("self-heating", heated)
         .with("open fixture", noise_a / 1e-6)
         .with_random("noise", noise_a / 1e-6)
 }
