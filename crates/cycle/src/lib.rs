@@ -406,6 +406,7 @@ impl Cycle {
             self.set_output(point, on);
         }
         self.traffic.check_restarts(output.rig.restart_check);
+        self.traffic.await_inputs(&output.rig.awaited, &self.wiring);
         self.traffic
             .watch_beam(output.rig.beam.map(|beam| self.wiring.read_events(beam)));
         let is_job = output.rig.job.is_some();

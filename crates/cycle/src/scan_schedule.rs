@@ -1,8 +1,8 @@
 //! Chooses what the scan of a line polls next.
 //!
 //! Every second transaction polls the module with the emergency-stop contact; even a write waits for that poll. The
-//! transactions between these polls alternate between the beam of the awaited bin and the other modules; every
-//! sixteenth of them instead reads the reset status of a module. When an actuator is not where it should be, the scan
+//! transactions between these polls alternate between the beam of the awaited bin and the modules; three of four polls
+//! of modules go to those with an awaited end sensor, if any. Every sixteenth of these transactions instead reads the reset status of a module. When an actuator is not where it should be, the scan
 //! first reads the reset status of all modules. Each list has its own counter, so no list starves another.
 
 use dcon::Command;
@@ -10,6 +10,8 @@ use dcon::Command;
 /// Of this number of transactions, polls of the emergency-stop contact not counted, one reads the reset status of a
 /// module.
 const RESET_EVERY: usize = 16;
+/// Of this number of polls of modules, one goes to the next in the round even while an end sensor is awaited.
+const ROUND_EVERY: usize = 4;
 
 /// Schedule of the scan of one line.
 #[derive(Debug)]
@@ -24,6 +26,11 @@ pub(super) struct ScanSchedule {
     contact_is_due: bool,
     turn: usize,
     next_other: usize,
+    /// Polls of the modules with an awaited end sensor, perhaps also of the one with the emergency-stop contact.
+    awaited: Vec<Command>,
+    next_awaited: usize,
+    /// Number of polls of modules so far.
+    polls: usize,
     next_reset: usize,
     /// Number of reset-status reads that go before all other polls.
     urgent_resets: usize,
@@ -52,6 +59,9 @@ impl ScanSchedule {
             contact_is_due: true,
             turn: 0,
             next_other: 0,
+            awaited: Vec::new(),
+            next_awaited: 0,
+            polls: 0,
             next_reset: 0,
             urgent_resets: 0,
             beam_was_last: false,
@@ -76,6 +86,21 @@ impl ScanSchedule {
         }
     }
 
+    /// Prefers these polls from now on; a command may come twice.
+    pub(super) fn hurry(&mut self, awaited: impl Iterator<Item = Command>) {
+        self.awaited.clear();
+        for command in awaited {
+            if !self.awaited.contains(&command) {
+                self.awaited.push(command);
+            }
+        }
+    }
+
+    /// Returns true while polls are preferred.
+    pub(super) fn hurries(&self) -> bool {
+        !self.awaited.is_empty()
+    }
+
     /// Returns the next poll; `None` when the line has nothing to poll. `beam` polls the beam of the awaited bin.
     pub(super) fn next(&mut self, beam: Option<Command>) -> Option<ScanPoll> {
         if let Some(command) = self.contact() {
@@ -94,10 +119,16 @@ impl ScanSchedule {
             return Some(ScanPoll::Other(command));
         }
         self.beam_was_last = !self.beam_was_last && beam.is_some();
-        if self.beam_was_last || self.others.is_empty() {
+        if self.beam_was_last {
             return beam.map(ScanPoll::Other);
         }
-        round(&self.others, &mut self.next_other).map(ScanPoll::Other)
+        self.polls += 1;
+        let awaited = match self.polls % ROUND_EVERY {
+            0 => None,
+            _preferred => round(&self.awaited, &mut self.next_awaited),
+        };
+        let poll = awaited.or_else(|| round(&self.others, &mut self.next_other));
+        poll.or(beam).map(ScanPoll::Other)
     }
 }
 
@@ -226,6 +257,24 @@ mod tests {
             [0x11, 0x12, 0x13].map(|address| of(&counts, poll(address))),
             [200, 100, 100]
         );
+    }
+
+    #[test]
+    fn an_awaited_module_gets_three_of_four_polls() {
+        let others = vec![poll(0x12), poll(0x13)];
+        let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), others, Vec::new());
+        scan_schedule.hurry([poll(0x13), poll(0x13)].into_iter());
+        let counts = counted(&mut scan_schedule, None, 800);
+        assert_eq!(
+            [0x11, 0x12, 0x13].map(|address| of(&counts, poll(address))),
+            [400, 50, 350]
+        );
+        // The module with the emergency-stop contact may be awaited too.
+        scan_schedule.hurry([poll(0x11)].into_iter());
+        let counts = counted(&mut scan_schedule, None, 800);
+        assert_eq!(of(&counts, poll(0x11)), 700);
+        scan_schedule.hurry(std::iter::empty());
+        assert!(!scan_schedule.hurries());
     }
 
     #[test]

@@ -253,6 +253,15 @@ impl Traffic {
         self.restart_check = restart_check;
     }
 
+    /// Makes the scan poll the modules of these inputs most often and without rest; without any, it rests between polls.
+    pub fn await_inputs(&mut self, inputs: &[DigitalIn], wiring: &Wiring) {
+        for slot in &mut self.slots {
+            let modules = inputs.iter().map(|it| wiring.digital_in(*it).module);
+            let own = modules.filter(|it| wiring.module(*it).line == slot.ends.line);
+            slot.scan_schedule.hurry(own.map(|it| wiring.poll(it)));
+        }
+    }
+
     /// Makes the measuring job wait until the lost write to this module is repeated.
     pub fn rewrite_for_job(&mut self, module: ModuleId) {
         if let Some(job) = &mut self.job {
@@ -421,7 +430,10 @@ impl Traffic {
         match slot.scan_schedule.next(beam)? {
             ScanPoll::Priority(command) => Some((command, Purpose::Scan)),
             ScanPoll::Other(command) => {
-                slot.scan_due = now + self.scan_period;
+                slot.scan_due = match slot.scan_schedule.hurries() {
+                    true => now,
+                    false => now + self.scan_period,
+                };
                 Some((command, Purpose::Scan))
             }
         }

@@ -9,6 +9,7 @@
 //! [`DEBOUNCE`] counts as a bounce.
 
 use super::moves::{Move, Strokes};
+use super::stroke_times::StrokeTimes;
 use super::trouble::Trouble;
 use super::watch::Watch;
 use super::wear::Uses;
@@ -104,6 +105,7 @@ pub struct Mechanism {
     /// Motion that a person ordered; kept until [`Self::take_hand_end`] returns how it ended.
     by_hand: Option<Move>,
     watch: Watch,
+    times: StrokeTimes,
     strokes_made: Vec<(&'static str, u64)>,
     uses: Uses,
     axis_at: Option<AxisStation>,
@@ -122,6 +124,7 @@ impl Mechanism {
             tried: Vec::new(),
             by_hand: None,
             watch: Watch::default(),
+            times: StrokeTimes::default(),
             strokes_made: Vec::new(),
             uses: Uses::default(),
             axis_at: None,
@@ -173,6 +176,14 @@ impl Mechanism {
     /// Yields the motions in progress.
     pub fn moving(&self) -> impl Iterator<Item = Move> + '_ {
         self.underway.iter().map(|underway| underway.movement)
+    }
+
+    /// Yields the sensors at the ends of the motions that may arrive now.
+    pub fn awaited(&self, now: RigTime) -> impl Iterator<Item = DigitalIn> + '_ {
+        let may_arrive =
+            move |it: &&Underway| self.times.may_arrive(it.movement, now.since(it.since));
+        let arriving = self.underway.iter().filter(may_arrive);
+        arriving.flat_map(|it| it.movement.arrival().iter().map(|(point, _)| *point))
     }
 
     /// Returns true while it is undecided whether an actuator has left its end or its sensor bounces; [`DEBOUNCE`]
@@ -316,6 +327,8 @@ impl Mechanism {
         for mut underway in std::mem::take(&mut self.underway) {
             underway.look_back(now, image);
             if self.is_there(&underway, now, image) {
+                let took = now.since(underway.since);
+                self.times.note(underway.movement, took);
                 self.arrived(underway.movement, &mut found);
             } else if self.is_late(&underway, image) {
                 if !self.closed_on_nothing(underway.movement, now, image) {

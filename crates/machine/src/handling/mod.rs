@@ -33,6 +33,7 @@ pub mod place;
 pub mod recovery;
 pub mod serial;
 pub mod sort;
+mod stroke_times;
 pub mod trouble;
 pub mod turn;
 mod watch;

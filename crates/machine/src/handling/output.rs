@@ -8,7 +8,7 @@ use crate::dut::experiment::Found;
 use crate::dut::{Characteristic, Judgement, Reason, TestRecord, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::bin::Bin;
-use crate::rig::point::{DigitalInput, DigitalOut};
+use crate::rig::point::{DigitalIn, DigitalInput, DigitalOut};
 use units::{RigTime, Second};
 
 /// A job of the measuring line on the part in one nest.
@@ -51,6 +51,8 @@ pub struct Commands {
     pub job: Option<NestJob>,
     /// Beam whose event counter the scan polls.
     pub beam: Option<DigitalInput>,
+    /// End sensors of the motions that may arrive now: the scan polls their modules most often and without rest.
+    pub awaited: Vec<DigitalIn>,
     /// True while an actuator deviates and no alarm explains it: the cycle then reads the reset status of the modules
     /// (restart check).
     pub restart_check: bool,

@@ -101,6 +101,7 @@ impl Station {
         };
         let mut found = own.mechanism.update(now, image);
         output.rig.motions.extend(found.motions);
+        output.rig.awaited.extend(own.mechanism.awaited(now));
         output.rig.restart_check = own.mechanism.needs_restart_check(now);
         self.still_in_nest(now, image, &mut found.trouble);
         found.trouble
