@@ -1,17 +1,20 @@
 //! Chooses what the scan of a line polls next.
 //!
 //! Every second transaction polls the module with the emergency-stop contact; even a write waits for that poll. The
-//! transactions between these polls alternate between the beam of the awaited bin and the modules; three of four polls
-//! of modules go to those with an awaited end sensor, if any. Every sixteenth of these transactions instead reads the reset status of a module. When an actuator is not where it should be, the scan
+//! transactions between these polls alternate between the beam of the awaited bin and the modules. While end sensors are
+//! awaited, polls of modules go to theirs, but for one to the next module in the round after each [`ROUND`]. Every
+//! sixteenth of these transactions instead reads the reset status of a module. When an actuator is not where it should be, the scan
 //! first reads the reset status of all modules. Each list has its own counter, so no list starves another.
 
 use dcon::Command;
+use units::{RigTime, Span};
 
 /// Of this number of transactions, polls of the emergency-stop contact not counted, one reads the reset status of a
 /// module.
 const RESET_EVERY: usize = 16;
-/// Of this number of polls of modules, one goes to the next in the round even while an end sensor is awaited.
-const ROUND_EVERY: usize = 4;
+/// Time after a poll in the round of the modules from which the next one precedes an awaited module. On a slow line it is
+/// always due, so that no sensor of another module gets old.
+const ROUND: Span = Span::ms(20);
 
 /// Schedule of the scan of one line.
 #[derive(Debug)]
@@ -29,8 +32,8 @@ pub(super) struct ScanSchedule {
     /// Polls of the modules with an awaited end sensor, perhaps also of the one with the emergency-stop contact.
     awaited: Vec<Command>,
     next_awaited: usize,
-    /// Number of polls of modules so far.
-    polls: usize,
+    /// Instant of the last poll in the round.
+    round_at: RigTime,
     next_reset: usize,
     /// Number of reset-status reads that go before all other polls.
     urgent_resets: usize,
@@ -61,7 +64,7 @@ impl ScanSchedule {
             next_other: 0,
             awaited: Vec::new(),
             next_awaited: 0,
-            polls: 0,
+            round_at: RigTime(0),
             next_reset: 0,
             urgent_resets: 0,
             beam_was_last: false,
@@ -101,8 +104,8 @@ impl ScanSchedule {
         !self.awaited.is_empty()
     }
 
-    /// Returns the next poll; `None` when the line has nothing to poll. `beam` polls the beam of the awaited bin.
-    pub(super) fn next(&mut self, beam: Option<Command>) -> Option<ScanPoll> {
+    /// Returns the next poll at `now`; `None` when the line has nothing to poll. `beam` polls the beam of the awaited bin.
+    pub(super) fn next(&mut self, beam: Option<Command>, now: RigTime) -> Option<ScanPoll> {
         if let Some(command) = self.contact() {
             return Some(ScanPoll::Priority(command));
         }
@@ -122,12 +125,14 @@ impl ScanSchedule {
         if self.beam_was_last {
             return beam.map(ScanPoll::Other);
         }
-        self.polls += 1;
-        let awaited = match self.polls % ROUND_EVERY {
-            0 => None,
-            _preferred => round(&self.awaited, &mut self.next_awaited),
+        let awaited = match self.others.is_empty() || now.since(self.round_at) < ROUND {
+            true => round(&self.awaited, &mut self.next_awaited),
+            false => None,
         };
-        let poll = awaited.or_else(|| round(&self.others, &mut self.next_other));
+        let poll = awaited.or_else(|| {
+            self.round_at = now;
+            round(&self.others, &mut self.next_other)
+        });
         poll.or(beam).map(ScanPoll::Other)
     }
 }
@@ -157,16 +162,26 @@ mod tests {
         Digital::ReadEvents { channel }.to(Address(0x11))
     }
 
-    /// Counts how often each command comes in `turns` transactions.
+    /// Counts how often each command comes in `turns` transactions of 5 ms each.
     fn counted(
         scan_schedule: &mut ScanSchedule,
         beam: Option<Command>,
         turns: usize,
     ) -> Vec<(Command, usize)> {
+        counted_at(scan_schedule, beam, turns, Span::ms(5))
+    }
+
+    fn counted_at(
+        scan_schedule: &mut ScanSchedule,
+        beam: Option<Command>,
+        turns: usize,
+        each: Span,
+    ) -> Vec<(Command, usize)> {
         let mut counts: Vec<(Command, usize)> = Vec::new();
-        for _ in 0..turns {
+        for turn in 0..turns as u64 {
+            let now = RigTime(0) + Span(each.0 * turn);
             let Some(ScanPoll::Priority(command) | ScanPoll::Other(command)) =
-                scan_schedule.next(beam)
+                scan_schedule.next(beam, now)
             else {
                 continue;
             };
@@ -221,10 +236,13 @@ mod tests {
         assert_eq!(scan_schedule.contact(), None, "polled just now");
         scan_schedule.note_other();
         assert_eq!(
-            scan_schedule.next(None),
+            scan_schedule.next(None, RigTime(0)),
             Some(ScanPoll::Priority(poll(0x11)))
         );
-        assert_eq!(scan_schedule.next(None), Some(ScanPoll::Other(poll(0x12))));
+        assert_eq!(
+            scan_schedule.next(None, RigTime(0)),
+            Some(ScanPoll::Other(poll(0x12)))
+        );
     }
 
     #[test]
@@ -232,7 +250,7 @@ mod tests {
         let resets = vec![reset(0x13), reset(0x14)];
         let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), vec![poll(0x12)], resets);
         scan_schedule.require_resets();
-        let polled = std::iter::from_fn(|| scan_schedule.next(Some(beam())));
+        let polled = std::iter::from_fn(|| scan_schedule.next(Some(beam()), RigTime(0)));
         let polled: Vec<Command> = polled
             .map(|(ScanPoll::Priority(command) | ScanPoll::Other(command))| command)
             .filter(|command| *command != poll(0x11))
@@ -245,7 +263,7 @@ mod tests {
     fn an_unscanned_line_carries_measurements_only() {
         let mut scan_schedule = ScanSchedule::new(None, Vec::new(), vec![reset(0x04)]);
         scan_schedule.require_resets();
-        assert_eq!(scan_schedule.next(None), None);
+        assert_eq!(scan_schedule.next(None, RigTime(0)), None);
     }
 
     #[test]
@@ -260,19 +278,22 @@ mod tests {
     }
 
     #[test]
-    fn an_awaited_module_gets_three_of_four_polls() {
-        let others = vec![poll(0x12), poll(0x13)];
-        let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), others, Vec::new());
-        scan_schedule.hurry([poll(0x13), poll(0x13)].into_iter());
-        let counts = counted(&mut scan_schedule, None, 800);
-        assert_eq!(
-            [0x11, 0x12, 0x13].map(|address| of(&counts, poll(address))),
-            [400, 50, 350]
-        );
+    fn an_awaited_module_gets_most_polls() {
+        let shares = |awaited, each| {
+            let others = vec![poll(0x12), poll(0x13)];
+            let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), others, Vec::new());
+            scan_schedule.hurry([poll(awaited), poll(awaited)].into_iter());
+            assert!(scan_schedule.hurries());
+            let counts = counted_at(&mut scan_schedule, None, 800, each);
+            [0x11, 0x12, 0x13].map(|address| of(&counts, poll(address)))
+        };
+        // The round is due after each 20 ms; every second of its polls goes to the awaited module too.
+        assert_eq!(shares(0x13, Span::ms(2)), [400, 40, 360]);
+        assert_eq!(shares(0x13, Span::ms(30)), [400, 200, 200]);
         // The module with the emergency-stop contact may be awaited too.
-        scan_schedule.hurry([poll(0x11)].into_iter());
-        let counts = counted(&mut scan_schedule, None, 800);
-        assert_eq!(of(&counts, poll(0x11)), 700);
+        assert_eq!(shares(0x11, Span::ms(2)), [721, 40, 39]);
+        let mut scan_schedule = ScanSchedule::new(None, vec![poll(0x12)], Vec::new());
+        scan_schedule.hurry([poll(0x12)].into_iter());
         scan_schedule.hurry(std::iter::empty());
         assert!(!scan_schedule.hurries());
     }

@@ -427,7 +427,7 @@ impl Traffic {
             return None;
         }
         let beam = self.beam.filter(|_| slot.ends.line == self.beam_line);
-        match slot.scan_schedule.next(beam)? {
+        match slot.scan_schedule.next(beam, now)? {
             ScanPoll::Priority(command) => Some((command, Purpose::Scan)),
             ScanPoll::Other(command) => {
                 slot.scan_due = match slot.scan_schedule.hurries() {

@@ -89,15 +89,15 @@ fn a_search_seals_after_the_release_ramp_ends() {
 
 #[test]
 fn a_release_ramp_waits_for_the_ramp_before() {
+    let within = |centre_v, half_width_v| Expected {
+        centre: Volt(centre_v),
+        half_width: Volt(half_width_v),
+    };
     let wait_ms = |rising: bool| {
         let context = context();
         let mut state = at_23_c();
-        state
-            .plan
-            .expect(Direction::Falling, Expected::new(Volt(2.3), 0.03));
-        state
-            .plan
-            .expect(Direction::Rising, Expected::new(Volt(7.8), 0.02));
+        state.plan.expect(Direction::Falling, within(2.3, 0.09));
+        state.plan.expect(Direction::Rising, within(7.8, 0.06));
         if rising {
             state.enter(Stage::OperateFine(0), &context);
             fine::conclude(
