@@ -173,7 +173,7 @@ pub fn block_on<T>(
 
 /// Creates a runtime of one thread for runs on `source`. In virtual time the runtime's clock is paused and its I/O
 /// driver is off: a rig in this process has no file or socket, and the driver would call the kernel at each step of the
-/// clock. One blocking thread writes the history: each thread that SQLite works on keeps memory of its own.
+/// clock. One blocking thread does all work on the history: each thread that SQLite works on keeps memory of its own.
 ///
 /// # Errors
 /// Fails when the operating system refuses the runtime.

@@ -1,9 +1,9 @@
 //! Chooses what the scan of a line polls next.
 //!
 //! Every second transaction polls the module with the emergency-stop contact; even a write waits for that poll. The
-//! transactions between these polls alternate between the beam of the awaited bin and the modules. While end sensors are
-//! awaited, polls of modules go to theirs, but for one to the next module in the round after each [`ROUND`]. Every
-//! sixteenth of these transactions instead reads the reset status of a module. When an actuator is not where it should be, the scan
+//! transactions between these polls alternate between the beam of the awaited bin and the modules; every sixteenth of
+//! these transactions instead reads the reset status of a module. While a motion may arrive, the polls of modules go to the modules of
+//! its end sensors, as long as the others have not waited too long. When an actuator is not where it should be, the scan
 //! first reads the reset status of all modules. Each list has its own counter, so no list starves another.
 
 use dcon::Command;
@@ -12,8 +12,8 @@ use units::{RigTime, Span};
 /// Of this number of transactions, polls of the emergency-stop contact not counted, one reads the reset status of a
 /// module.
 const RESET_EVERY: usize = 16;
-/// Time after a poll in the round of the modules from which the next one precedes an awaited module. On a slow line it is
-/// always due, so that no sensor of another module gets old.
+/// Greatest time that awaited modules may take between two polls of another module. On a slow line the round of the
+/// modules is always due, so that no sensor gets old.
 const ROUND: Span = Span::ms(20);
 
 /// Schedule of the scan of one line.
@@ -45,7 +45,7 @@ pub(super) struct ScanSchedule {
 pub(super) enum ScanPoll {
     /// The poll of the emergency-stop contact; the scan does not pause afterwards.
     Priority(Command),
-    /// Any other poll; the scan pauses afterwards.
+    /// Any other poll; the scan pauses afterwards, unless it hurries.
     Other(Command),
 }
 
@@ -99,6 +99,11 @@ impl ScanSchedule {
         }
     }
 
+    /// Returns the time after a poll in the round from which the next one precedes an awaited module.
+    fn round_pause(&self) -> Span {
+        Span(ROUND.0 / self.others.len().max(1) as u64)
+    }
+
     /// Returns true while polls are preferred.
     pub(super) fn hurries(&self) -> bool {
         !self.awaited.is_empty()
@@ -125,7 +130,8 @@ impl ScanSchedule {
         if self.beam_was_last {
             return beam.map(ScanPoll::Other);
         }
-        let awaited = match self.others.is_empty() || now.since(self.round_at) < ROUND {
+        let awaited = match self.others.is_empty() || now.since(self.round_at) < self.round_pause()
+        {
             true => round(&self.awaited, &mut self.next_awaited),
             false => None,
         };
@@ -287,11 +293,12 @@ mod tests {
             let counts = counted_at(&mut scan_schedule, None, 800, each);
             [0x11, 0x12, 0x13].map(|address| of(&counts, poll(address)))
         };
-        // The round is due after each 20 ms; every second of its polls goes to the awaited module too.
-        assert_eq!(shares(0x13, Span::ms(2)), [400, 40, 360]);
+        // The round is due 10 ms after its last poll, so in every third turn; every second of its polls goes to the
+        // awaited module too.
+        assert_eq!(shares(0x13, Span::ms(2)), [400, 67, 333]);
         assert_eq!(shares(0x13, Span::ms(30)), [400, 200, 200]);
         // The module with the emergency-stop contact may be awaited too.
-        assert_eq!(shares(0x11, Span::ms(2)), [721, 40, 39]);
+        assert_eq!(shares(0x11, Span::ms(2)), [667, 67, 66]);
         let mut scan_schedule = ScanSchedule::new(None, vec![poll(0x12)], Vec::new());
         scan_schedule.hurry([poll(0x12)].into_iter());
         scan_schedule.hurry(std::iter::empty());

@@ -7,27 +7,43 @@ use units::Span;
 /// Share of its mean time after which a motion may arrive: of strokes that scatter by 12 %, one in twenty arrives
 /// earlier, and the scan notices it one rest later.
 const SOON: f64 = 0.8;
-/// Weight of the newest time in the mean.
-const NEWEST: f64 = 0.125;
+/// Number of strokes that the mean follows.
+const STROKES: u32 = 8;
 
-/// Mean time of each motion made so far, seconds.
+/// Time of a motion.
+#[derive(Debug)]
+struct StrokeTime {
+    of: Move,
+    /// Number of strokes in the mean, up to [`STROKES`].
+    n: u32,
+    mean_s: f64,
+}
+
+/// Time of each motion made so far.
 #[derive(Debug, Default)]
-pub struct StrokeTimes(Vec<(Move, f64)>);
+pub struct StrokeTimes(Vec<StrokeTime>);
 
 impl StrokeTimes {
     /// Adds the time of a motion that has arrived.
     pub fn note(&mut self, movement: Move, took: Span) {
         let took_s = took.as_seconds();
-        match self.0.iter_mut().find(|(known, _)| *known == movement) {
-            Some((_, mean_s)) => *mean_s += NEWEST * (took_s - *mean_s),
-            None => self.0.push((movement, took_s)),
+        match self.0.iter_mut().find(|it| it.of == movement) {
+            Some(it) => {
+                it.n = (it.n + 1).min(STROKES);
+                it.mean_s += (took_s - it.mean_s) / f64::from(it.n);
+            }
+            None => self.0.push(StrokeTime {
+                of: movement,
+                n: 1,
+                mean_s: took_s,
+            }),
         }
     }
 
     /// Returns true when a motion that began `ago` may arrive; one without a known time may arrive at any instant.
     pub fn may_arrive(&self, movement: Move, ago: Span) -> bool {
-        let known = self.0.iter().find(|(known, _)| *known == movement);
-        known.is_none_or(|(_, mean_s)| ago.as_seconds() >= SOON * mean_s)
+        let known = self.0.iter().find(|it| it.of == movement);
+        known.is_none_or(|it| ago.as_seconds() >= SOON * it.mean_s)
     }
 }
 
@@ -39,7 +55,7 @@ mod tests {
     fn a_motion_may_arrive_shortly_before_its_mean_time() {
         let mut times = StrokeTimes::default();
         assert!(times.may_arrive(Move::ProbesUp, Span::ms(0)), "unknown");
-        for ms in [100, 100, 180] {
+        for ms in [100, 100, 130] {
             times.note(Move::ProbesUp, Span::ms(ms));
         }
         // The mean is 110 ms.

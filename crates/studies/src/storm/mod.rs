@@ -102,6 +102,7 @@ impl<'a> Storm<'a> {
         Ok(Outcome {
             seed,
             counts: Counts::of(&case),
+            hold_us: case.hold_us,
             faults: case.faults,
             trace: if is_shown { trace } else { Vec::new() },
             violations,
@@ -112,7 +113,11 @@ impl<'a> Storm<'a> {
     /// Runs all lives of a seed and returns the case for `judge`.
     fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
         let wiring = &self.plant.wiring;
-        let scenario = Scenario::of(seed, self.order.parts, wiring, &self.climate);
+        let mut scenario = Scenario::of(seed, self.order.parts, wiring, &self.climate);
+        if self.order.world.is_some() {
+            // An ordered world has a duration of its own, by default this one.
+            scenario.hold_us = LONG_US;
+        }
         let rig = self.rig(
             scenario.rig,
             scenario.uncalibrated,

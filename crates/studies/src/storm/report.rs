@@ -17,6 +17,7 @@ pub struct Outcome {
     pub(super) seed: u64,
     pub(super) counts: Counts,
     pub(super) violations: Vec<String>,
+    pub(super) hold_us: u64,
     pub(super) faults: Vec<String>,
     pub(super) trace: Vec<String>,
     pub(super) digest: u64,
@@ -102,7 +103,8 @@ fn shown(order: &Order, it: &Outcome) -> String {
         some => some.join("; "),
     };
     format!(
-        "seed {seed}: {what}\n  faults: {}\n  {last}\n  again: relayrig --config {} study storm --recipe {} --seed {seed} --parts {}",
+        "seed {seed}: {what}\n  faults, of {} ms at an instant: {}\n  {last}\n  again: relayrig --config {} study storm --recipe {} --seed {seed} --parts {}",
+        it.hold_us as f64 / 1e3,
         it.faults.join(" "),
         order.config.display(),
         order.recipe.name,

@@ -72,7 +72,8 @@ pub struct Scenario {
     pub uncalibrated: bool,
     /// Faults of the simulated rig, in the form of `--fault`.
     pub faults: Vec<String>,
-    /// Duration of the faults that begin at an instant, microseconds: [`LONG_US`], or in one storm of three a short one.
+    /// Duration of the faults that begin at an instant, microseconds: [`LONG_US`], or in one storm of three over
+    /// solid-state relays a short one.
     pub hold_us: u64,
     /// Instants at which a safety input is disturbed, microseconds.
     pub disturbed_us: Vec<u64>,
@@ -116,9 +117,9 @@ impl Scenario {
         }
         if climate.is_of_circuits() {
             scenario.add_circuit_faults(&mut dice, wiring, climate);
-        }
-        if dice.once_in(3) {
-            scenario.hold_us = dice.between(SHORT_US.0, SHORT_US.1);
+            if dice.once_in(3) {
+                scenario.hold_us = dice.between(SHORT_US.0, SHORT_US.1);
+            }
         }
         scenario
     }

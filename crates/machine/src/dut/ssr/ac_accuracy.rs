@@ -4,7 +4,7 @@
 use super::ac_plan::{
     AcPlan, CLAMP_V, DIVIDER, LINE_OHM, LINE_SHUNT_OHM, LOOP_SHUNT_OHM, SHUNT_ERROR,
 };
-use super::accuracy::{COLD, WARMED, self_heating};
+use super::accuracy::{AC_K_PER_W, COLD, WARMED, self_heating};
 use super::measure::line::leakage::Leak;
 use super::measure::line::looped::{Distorted, OnState};
 use super::measure::line::references::REFERENCE_OHM;
@@ -80,7 +80,7 @@ pub fn line_leakage(ac: &AcPlan, leak: &Leak, part: LeakageOf, value_a: f64) -> 
         LeakageOf::Whole => resistive_a * resistive_a / whole_a.max(f64::MIN_POSITIVE),
         LeakageOf::Capacitive => 0.0,
     };
-    let heated_a = heated_a * self_heating(ac.mains_v, resistive_a);
+    let heated_a = heated_a * self_heating(AC_K_PER_W, ac.mains_v, resistive_a);
     let scales = ac.leakage();
     let shown_v = SQRT_2 * whole_a * LINE_SHUNT_OHM;
     let budget = Budget::default()

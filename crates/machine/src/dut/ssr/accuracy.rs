@@ -20,13 +20,15 @@ const BRIEF: f64 = 0.1;
 
 /// Growth of the leakage of a junction with its temperature: twice the current each ten kelvin.
 const LEAKAGE_PER_K: f64 = 0.07;
-/// Greatest thermal resistance between junction and case of a power switch of a few amperes, K/W.
-const JUNCTION_K_PER_W: f64 = 3.0;
+/// Greatest thermal resistance between junction and case, K/W, of the small MOSFETs of a DC part.
+const DC_K_PER_W: f64 = 15.0;
+/// As [`DC_K_PER_W`], of the triac or the thyristors of an AC part.
+pub const AC_K_PER_W: f64 = 3.0;
 
-/// Returns the share by which a leakage may read too high because it heats its own junction; `volts` and `ampere`: rms of
-/// the voltage at the output, and of the current in phase with it.
-pub fn self_heating(volts: f64, ampere: f64) -> f64 {
-    LEAKAGE_PER_K * JUNCTION_K_PER_W * (volts * ampere).abs()
+/// Returns the share by which a leakage may read too high because it heats its own junction, of `k_per_w` to the case;
+/// `volts` and `ampere`: rms of the voltage at the output, and of the current in phase with it.
+pub fn self_heating(k_per_w: f64, volts: f64, ampere: f64) -> f64 {
+    LEAKAGE_PER_K * k_per_w * (volts * ampere).abs()
 }
 
 /// Returns the standard uncertainty of an applied or measured value, in its unit: gain and offset, without noise.
@@ -61,7 +63,7 @@ pub fn leakage(
     is_referenced: bool,
 ) -> Budget {
     let share = (range.source.gain(volts) + range.source.offset) / volts;
-    let heated = self_heating(volts, ampere) * ampere / 1e-6;
+    let heated = self_heating(DC_K_PER_W, volts, ampere) * ampere / 1e-6;
     if !is_referenced {
         return current(range, ampere, moved, 1e-6)
             .with_bounds("source", share * ampere / 1e-6)

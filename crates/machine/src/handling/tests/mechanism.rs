@@ -55,6 +55,27 @@ fn a_motion_arrives_only_with_newer_sensor_values() {
 }
 
 #[test]
+fn an_end_sensor_is_awaited_shortly_before_the_motion_arrives() {
+    let awaited = |mock: &MockRig| {
+        let mut sensors = mock.mechanism.awaited(mock.now);
+        sensors.any(|it| it == DigitalIn::ProbeUp)
+    };
+    let mut mock = MockRig::at_rest();
+    mock.mechanism.driven(Move::ProbesUp, mock.now, &mock.image);
+    assert!(awaited(&mock), "no stroke has shown its time");
+    mock.carried_out(Move::ProbesUp);
+    assert!(!awaited(&mock), "arrived");
+    mock.mechanism
+        .driven(Move::ProbesDown, mock.now, &mock.image);
+    mock.carried_out(Move::ProbesDown);
+    mock.mechanism.driven(Move::ProbesUp, mock.now, &mock.image);
+    mock.after(60);
+    assert!(!awaited(&mock), "too early");
+    mock.after(60);
+    assert!(awaited(&mock), "soon");
+}
+
+#[test]
 fn a_moving_actuator_is_anywhere_on_its_way() {
     let mut mock = MockRig::at_rest();
     mock.mechanism

@@ -123,7 +123,7 @@ fn misplaced(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     // A run that ends while the fingers open raises its alarm before the body falls.
     let opened_us = let_go_us(body).saturating_sub(OPENING_US);
     match place {
-        Place::Bin(bin) if body.clung => (!is_counted(case, opened_us, bin)).then(|| {
+        Place::Bin(bin) if body.clung => (!is_counted(case, let_go_us(body), bin)).then(|| {
             format!(
                 "came into {bin} with another one at {} and no alarm declares it",
                 seconds(*at_us)
@@ -196,11 +196,13 @@ fn is_declared(case: &Case, at_us: u64) -> bool {
 /// life may have confirmed the first body and not yet counted the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
+    let opened_us = at_us.saturating_sub(OPENING_US);
     let cut_off = case
         .life_at(at_us)
+        .or_else(|| case.life_at(opened_us))
         .is_none_or(|life| life.ended_us < confirmed_us && life.end == End::Killed);
     cut_off
-        || has_alarm(case, at_us, |alarm| {
+        || has_alarm(case, opened_us, |alarm| {
             alarm.code == "bin_beam" && alarm.args.get("bin") == Some(bin)
         })
 }

@@ -69,13 +69,18 @@ fn an_operate_ramp_waits_for_the_release_ramp() {
     }
 }
 
+fn within(centre_v: f64, half_width_v: f64) -> Expected {
+    Expected {
+        centre: Volt(centre_v),
+        half_width: Volt(half_width_v),
+    }
+}
+
 #[test]
 fn a_search_seals_after_the_release_ramp_ends() {
     let context = context();
     let mut state = at_23_c();
-    state
-        .plan
-        .expect(Direction::Falling, Expected::new(Volt(1.9), 0.1));
+    state.plan.expect(Direction::Falling, within(1.9, 0.3));
     state.enter(Stage::ReleaseFine(0), &context);
     let missed = watched(true, RESTING, 10.0);
     let next = fine::conclude(&context, &missed, &mut state, (Direction::Falling, 0));
@@ -89,10 +94,6 @@ fn a_search_seals_after_the_release_ramp_ends() {
 
 #[test]
 fn a_release_ramp_waits_for_the_ramp_before() {
-    let within = |centre_v, half_width_v| Expected {
-        centre: Volt(centre_v),
-        half_width: Volt(half_width_v),
-    };
     let wait_ms = |rising: bool| {
         let context = context();
         let mut state = at_23_c();
