@@ -140,12 +140,16 @@ pub fn drop_at_rated(plan: &DcPlan, resistance: &Budget) -> Budget {
     budget
 }
 
+/// Difference between the fitted warm-up of one time constant and that of a part, half width, as a share of the rise.
+const WARM_UP: f64 = 0.03;
+
 /// Returns the budget, mV, of a rise of the drop by heat; the offset of the meter cancels between the two readings.
 pub fn drift(plan: &DcPlan, rise_v: f64) -> Budget {
     let meter = &plan.drop.meter;
     let noise_v = WARMED * meter.noise_over(1.0);
     Budget::default()
         .with_bounds("voltage gain", meter.gain(rise_v) * 1e3)
+        .with_bounds("warm-up", WARM_UP * rise_v * 1e3)
         .with_random("noise", noise_v * 1e3)
 }
 

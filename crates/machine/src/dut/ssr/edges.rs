@@ -15,7 +15,7 @@ const ON: f64 = 0.9;
 const OFF: f64 = 0.1;
 /// Least share of a step that one interval of samples must hold so that the step counts as a jump within it.
 const JUMP: f64 = 0.5;
-/// Least height of the pulse, in standard deviations of the noise before it.
+/// Least height of the pulse, and of the voltage of the load before it, in standard deviations of the noise before it.
 const DISTINCT: f64 = 8.0;
 /// Least number of codes of a converter of 8 bits between the levels of a signal.
 const FEWEST_CODES: f64 = 100.0;
@@ -59,7 +59,8 @@ pub fn pulse(records: &[Arc<Waveform>]) -> Option<Edges> {
     }
 }
 
-/// Returns the edges of a pulse; none when the record holds no whole pulse, or a number that is not finite.
+/// Returns the edges of a pulse; none when the record holds no whole pulse, no voltage of the load before it, or a number
+/// that is not finite.
 pub fn edges(control: &Waveform, output: &Waveform) -> Option<Edges> {
     let (input, load) = (Signal::of(control)?, Signal::of(output)?);
     let alike = control.volts.len() == output.volts.len()
@@ -89,6 +90,9 @@ pub fn edges(control: &Waveform, output: &Waveform) -> Option<Edges> {
     let before = 0..rise.index.saturating_sub(AROUND);
     let source_v = median(&load.volts[before.clone()]);
     let noise_v = load.noise_v(before);
+    if source_v < DISTINCT * noise_v {
+        return None;
+    }
     let last = fall.index - (during.len() / 10).max(AROUND)..fall.index - 1;
     let final_v = source_v - median(&load.volts[last]);
     let (mut on, mut off) = (None, None);

@@ -24,6 +24,8 @@ pub enum DcStage {
     ConductsBeyond,
     /// One step of a search.
     Threshold(Direction),
+    /// The ends of both searches once more.
+    SearchEnds,
     /// Times of one control pulse.
     Timing,
     /// Resistance, drop and drift.
@@ -34,7 +36,7 @@ pub enum DcStage {
 
 impl DcStage {
     /// Every stage.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::OpenFixture,
         Self::ColdLeakage,
         Self::StuckShort,
@@ -44,6 +46,7 @@ impl DcStage {
         Self::ConductsBeyond,
         Self::Threshold(Direction::Rising),
         Self::Threshold(Direction::Falling),
+        Self::SearchEnds,
         Self::Timing,
         Self::Resistance,
         Self::HotLeakage,
@@ -57,7 +60,7 @@ impl DcStage {
             Self::StuckShort => Label::Short,
             Self::Blocks | Self::BlocksBeyond => Label::Blocks,
             Self::Conducts | Self::ConductsBeyond => Label::Conducts,
-            Self::Threshold(_) => Label::Threshold,
+            Self::Threshold(_) | Self::SearchEnds => Label::Threshold,
             Self::Timing => Label::Timing,
             Self::Resistance => Label::OnResistance,
             Self::HotLeakage => Label::LeakageHot,
@@ -80,7 +83,8 @@ impl DcStage {
             | Self::BlocksBeyond
             | Self::Conducts
             | Self::ConductsBeyond
-            | Self::Threshold(_) => &[],
+            | Self::Threshold(_)
+            | Self::SearchEnds => &[],
         }
     }
 }

@@ -26,6 +26,7 @@ mod leakage;
 pub(super) mod line;
 pub(super) mod ramp;
 mod resistance;
+mod search_ends;
 mod stage;
 mod state;
 mod threshold;

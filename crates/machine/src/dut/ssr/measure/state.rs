@@ -6,6 +6,7 @@ use super::dc_stage::DcStage;
 use super::given::Given;
 use super::line::stage::AcStage;
 use super::line::{self, Level, conforms, looped, references, staircase, train};
+use super::search_ends::{self, SearchEnds};
 use super::stage::Stage;
 use super::{conformity, contact, discharge, input, known, leakage, resistance, threshold, timing};
 use crate::dut::Reason;
@@ -46,6 +47,8 @@ pub struct State {
     pub learned: Learned,
     /// Search under way.
     pub search: Option<Search>,
+    /// Ends of the searches that are over.
+    pub ends: SearchEnds,
     /// Upper end of the interval that holds the turn-on voltage, V.
     pub turn_on_v: Option<f64>,
     /// Judgements of limits that the conformity tests have proven.
@@ -159,6 +162,7 @@ impl State {
             DcStage::Conducts => conformity::conduct_acts(plan, points, -plan.guard_v),
             DcStage::ConductsBeyond => conformity::conduct_beyond_acts(plan, points),
             DcStage::Threshold(direction) => threshold::acts(self, direction, plan, points),
+            DcStage::SearchEnds => search_ends::acts(self, plan, points),
             DcStage::Timing => timing::acts(self, plan, points),
             DcStage::Resistance => resistance::acts(self, plan, dc, points),
         }
@@ -234,6 +238,7 @@ impl State {
             DcStage::Conducts => conformity::conclude_conducts(self, plan, given),
             DcStage::ConductsBeyond => conformity::conclude_conducts_beyond(self, plan, given),
             DcStage::Threshold(direction) => threshold::conclude(self, direction, plan, given),
+            DcStage::SearchEnds => search_ends::conclude(self, given),
             DcStage::Timing => timing::conclude(self, plan, given),
             DcStage::Resistance => resistance::conclude(self, plan, dc, given),
         };

@@ -401,6 +401,34 @@ fn a_lead_that_breaks_and_heals_fails_no_part() {
 }
 
 #[test]
+fn a_lead_that_breaks_and_heals_moves_no_threshold() {
+    let part = good();
+    let truth = [
+        (Parameter::TurnOnVoltage, part.turn_on_v),
+        (Parameter::TurnOffVoltage, part.turn_off_v),
+    ];
+    let mut unsteady = 0;
+    for lasts in [1, 3, 10] {
+        for jobs in 0..150 {
+            let mut bench = Bench::with(good());
+            (bench.lead_opens_after, bench.lead_heals_after) = (jobs, jobs + lasts);
+            let test = bench.tested(recipe(&[]), false);
+            unsteady +=
+                usize::from(test.why_stopped() == Some(&Stop::Void(Finding::Unsteady.into())));
+            for (of, volts) in truth.iter().filter(|_| test.verdict() == Verdict::Pass) {
+                let reading = test.record().result(*of).unwrap();
+                let error_v = (reading.value - volts).abs();
+                assert!(
+                    error_v < 2.0 * reading.expanded(),
+                    "{lasts} jobs after {jobs}: {of:?} {reading:?}"
+                );
+            }
+        }
+    }
+    assert!(unsteady > 20, "{unsteady}");
+}
+
+#[test]
 fn a_lead_that_breaks_at_any_job_fails_no_part() {
     let (mut voids, mut named) = (0, 0);
     for jobs in 0..150 {

@@ -5,6 +5,7 @@ use super::conformity::{is_off, is_on};
 use super::dc_stage::DcStage;
 use super::given::{Given, NotDelivered};
 use super::ramp;
+use super::search_ends;
 use super::stage::Stage;
 use super::state::{Next, State};
 use crate::dut::ssr::accuracy;
@@ -84,7 +85,16 @@ pub fn conclude(
         Direction::Rising => is_on(ampere),
         Direction::Falling => !is_off(ampere),
     });
-    Ok(narrowed(state, search, (direction, again), plan))
+    let next = narrowed(state, search, (direction, again), plan);
+    if next != Next::Planned {
+        return Ok(next);
+    }
+    state.ends.keep(direction, &search);
+    let is_last = direction == Direction::Falling;
+    Ok(match is_last && search_ends::are_doubtful(state) {
+        true => Next::Insert(Stage::Dc(DcStage::SearchEnds)),
+        false => Next::Planned,
+    })
 }
 
 /// Goes on with a narrowed search; `again` is the stage of its next step. After the last one the threshold is known.
