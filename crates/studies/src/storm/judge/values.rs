@@ -81,8 +81,8 @@ fn has_truth(defect: &str, reading: &Reading) -> bool {
         "unstable_contact" => reading.bin().name() != "contact",
         // It depends on the phase of the line at which the control comes.
         "no_zero_cross" => !["t_on_us", "v_zc_v"].contains(&reading.of.key()),
-        // It doubles every ten kelvins, and the part cools.
-        "leaky_junction" => reading.of.key() != "i_leak_hot_ua",
+        // It doubles every ten kelvins, and the part cools before the reading.
+        "leaky_junction" | "thermal" => reading.of.key() != "i_leak_hot_ua",
         // It turns on later than a search waits near the threshold, and is hardly on when a pulse ends.
         "slow_turn_on" => !["v_on_v", "v_off_v", "t_off_us"].contains(&reading.of.key()),
         "slow_turn_off" => reading.of.key() != "v_off_v",
