@@ -53,26 +53,24 @@ pub fn are_doubtful(state: &State) -> bool {
     expected.is_none_or(|it| (off_v - it.at_v).abs() > UNLIKELY * it.reach_v)
 }
 
-/// Returns the acts: up through the ends of the turn-on voltage, then down through those of the turn-off voltage.
+/// Returns the acts: up through the ends of the turn-on voltage, then down to the lower end of the turn-off voltage.
 pub fn acts(state: &State, plan: &Plan, points: &Points) -> Vec<Act> {
     let Some([rising, falling]) = state.ends.both() else {
         return Vec::new();
     };
-    let read = || points.read(Device::SmuOut);
-    vec![
-        Act::Query(vec![points.step(Device::SmuIn, 0.0, rising.0)]),
-        Act::Wait(plan.dwell()),
-        Act::Query(vec![read(), points.level(Device::SmuIn, rising.1)]),
-        Act::Wait(plan.dwell()),
-        Act::Query(vec![
-            read(),
-            points.step(Device::SmuIn, plan.control_v, falling.1),
-        ]),
-        Act::Wait(plan.dwell()),
-        Act::Query(vec![read(), points.level(Device::SmuIn, falling.0)]),
-        Act::Wait(plan.dwell()),
-        Act::Query(vec![read()]),
-    ]
+    let steps = [
+        points.step(Device::SmuIn, 0.0, rising.0),
+        points.level(Device::SmuIn, rising.1),
+        points.level(Device::SmuIn, falling.0),
+    ];
+    let act = |step| {
+        [
+            Act::Query(vec![step]),
+            Act::Wait(plan.dwell()),
+            Act::Query(vec![points.read(Device::SmuOut)]),
+        ]
+    };
+    steps.into_iter().flat_map(act).collect()
 }
 
 /// Concludes the ends: when one of them differs from its search, the part is void, for the cause that known states of the
@@ -81,8 +79,8 @@ pub fn conclude(state: &mut State, given: &Given) -> Result<Next, NotDelivered> 
     if state.ends.both().is_none() {
         return Ok(Next::Planned);
     }
-    let [below, above, held, dropped] = given.singles(Device::SmuOut)?;
-    if !is_off(below) || !is_on(above) || is_off(held) || !is_off(dropped) {
+    let [below, above, dropped] = given.singles(Device::SmuOut)?;
+    if !is_off(below) || !is_on(above) || !is_off(dropped) {
         state.doubted = Some(Finding::Unsteady.into());
         return Ok(Next::Insert(Stage::Known));
     }
