@@ -484,6 +484,7 @@ reason-ssr_line_dead = no voltage from the line: fuse, load or output of the AC 
 reason-ssr_loop_dead = no voltage from the load circuit: fuse, contactor, lead, load or source
 reason-ssr_socket_shorted = the socket is shorted without a part
 reason-ssr_unsteady = the part failed its first test and passed the second
+reason-ssr_contradictory = readings of the part contradict each other: a connection broke or closed for a moment
 reason-ssr_wrong_reference = a reference of the fixture reads wrong
 reason-ssr_not_delivered = { $detail } delivered other values than its programs return
     .any = an instrument delivered other values than its programs return

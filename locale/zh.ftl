@@ -455,6 +455,7 @@ reason-ssr_line_dead = 电网侧无电压：熔断器、负载或交流电源输
 reason-ssr_loop_dead = 负载回路无电压：熔断器、接触器、引线、负载或电源故障
 reason-ssr_socket_shorted = 未接被测件时插座仍短路
 reason-ssr_unsteady = 被测件第一次测试不合格，第二次合格
+reason-ssr_contradictory = 被测件的读数互相矛盾：某处连接曾短暂断开或短接
 reason-ssr_wrong_reference = 夹具基准读数错误
 reason-ssr_not_delivered = { $detail } 返回的数值与程序不符
     .any = 仪器返回的数值与程序不符

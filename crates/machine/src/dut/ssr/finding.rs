@@ -60,6 +60,8 @@ pub enum Finding {
     SocketShorted,
     /// The first test of the part has failed it, the second one has passed it.
     Unsteady,
+    /// Readings of the part contradict each other: a connection broke or closed for a moment.
+    Contradictory,
     /// A reference of the fixture reads more than a tenth off its value.
     WrongReference,
     /// An instrument has delivered other values than its programs return; detail: the instrument.
@@ -68,7 +70,7 @@ pub enum Finding {
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::PinOpen,
         Self::ProbeChainOpen,
         Self::Turned,
@@ -94,6 +96,7 @@ impl Finding {
         Self::LoopDead,
         Self::SocketShorted,
         Self::Unsteady,
+        Self::Contradictory,
         Self::WrongReference,
         Self::NotDelivered,
     ];
@@ -142,6 +145,7 @@ impl Finding {
             Self::LoopDead => Entry::void("ssr_loop_dead"),
             Self::SocketShorted => Entry::void("ssr_socket_shorted"),
             Self::Unsteady => Entry::void("ssr_unsteady"),
+            Self::Contradictory => Entry::void("ssr_contradictory"),
             Self::WrongReference => Entry::void("ssr_wrong_reference"),
             Self::NotDelivered => Entry::void("ssr_not_delivered"),
         }

@@ -16,6 +16,10 @@ use units::{Span, Unit};
 /// Share of the voltage limit from which a drop shows that the source limits its voltage and keeps less than the
 /// commanded current.
 const LIMITED: f64 = 0.98;
+/// Greatest distance of the drops from their course, standard deviation, as a multiple of the noise of a drop and as a share
+/// of the rise: a lead that breaks or a short that closes meanwhile leaves more.
+const UNEVEN: f64 = 6.0;
+const CURVED: f64 = 0.1;
 /// Times after the begin of the current between which the drift counts, s.
 const DRIFT_S: [f64; 2] = [0.01, 0.2];
 /// Time from the half current to its reading, periods of the mains: least and greatest.
@@ -63,8 +67,13 @@ pub fn conclude(
         return Ok(Next::Planned);
     }
     let course = warming::course(drops).ok_or(NotDelivered(device))?;
-    let (cold_v, warm_v) = (course.at(0.0), course.at(drops.len() as f64));
     let rise_v = course.at(DRIFT_S[1] / PERIOD_S) - course.at(DRIFT_S[0] / PERIOD_S);
+    let noise_v = dc.drop.meter.noise_over(1.0);
+    if course.residual() > UNEVEN * noise_v + CURVED * rise_v.abs() {
+        state.record.stop(Finding::Contradictory);
+        return Ok(Next::Planned);
+    }
+    let (cold_v, warm_v) = (course.at(0.0), course.at(drops.len() as f64));
     // Half of the current makes a quarter of the heat; the rest of the junction's heat decays.
     let warmth = |left: f64| 0.5 * (warm_v - cold_v) * (0.25 + 0.75 * left);
     let [soon_v, late_v] = AFTER.map(|it| warmth(course.left(it)));

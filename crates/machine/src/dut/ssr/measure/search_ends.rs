@@ -1,5 +1,6 @@
-//! Repeats the ends of both searches of a DC part. A lead that breaks for a moment looks like an output that blocks, and so
-//! moves the threshold that a search finds; a hysteresis like that of the lot shows that neither search was disturbed.
+//! Repeats the ends of both searches of a DC part. A lead that breaks for a moment looks like an output that blocks, a short
+//! like one that conducts, and either moves the threshold that a search finds. A hysteresis like that of the lot shows that
+//! neither search was disturbed.
 
 use super::conformity::{is_off, is_on};
 use super::given::{Given, NotDelivered};
@@ -53,7 +54,7 @@ pub fn are_doubtful(state: &State) -> bool {
     expected.is_none_or(|it| (off_v - it.at_v).abs() > UNLIKELY * it.reach_v)
 }
 
-/// Returns the acts: up through the ends of the turn-on voltage, then down to the lower end of the turn-off voltage.
+/// Returns the acts: up through the ends of the turn-on voltage, then down through those of the turn-off voltage.
 pub fn acts(state: &State, plan: &Plan, points: &Points) -> Vec<Act> {
     let Some([rising, falling]) = state.ends.both() else {
         return Vec::new();
@@ -61,6 +62,7 @@ pub fn acts(state: &State, plan: &Plan, points: &Points) -> Vec<Act> {
     let steps = [
         points.step(Device::SmuIn, 0.0, rising.0),
         points.level(Device::SmuIn, rising.1),
+        points.level(Device::SmuIn, falling.1),
         points.level(Device::SmuIn, falling.0),
     ];
     let act = |step| {
@@ -73,15 +75,17 @@ pub fn acts(state: &State, plan: &Plan, points: &Points) -> Vec<Act> {
     steps.into_iter().flat_map(act).collect()
 }
 
-/// Concludes the ends: when one of them differs from its search, the part is void, for the cause that known states of the
-/// fixture show.
+/// Concludes the ends: when one of them differs from its search, the thresholds are dropped and the part is void, for the
+/// cause that known states of the fixture show.
 pub fn conclude(state: &mut State, given: &Given) -> Result<Next, NotDelivered> {
     if state.ends.both().is_none() {
         return Ok(Next::Planned);
     }
-    let [below, above, dropped] = given.singles(Device::SmuOut)?;
-    if !is_off(below) || !is_on(above) || !is_off(dropped) {
-        state.doubted = Some(Finding::Unsteady.into());
+    let [below, above, held, dropped] = given.singles(Device::SmuOut)?;
+    if !is_off(below) || !is_on(above) || is_off(held) || !is_off(dropped) {
+        state.record.forget(Parameter::TurnOnVoltage);
+        state.record.forget(Parameter::TurnOffVoltage);
+        state.doubted = Some(Finding::Contradictory.into());
         return Ok(Next::Insert(Stage::Known));
     }
     Ok(Next::Planned)

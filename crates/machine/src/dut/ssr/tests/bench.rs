@@ -6,6 +6,7 @@ use crate::dut::em_relay::settings::ReferenceSet;
 use crate::dut::procedure::Progress;
 use crate::dut::recipe::DeviceRecipe;
 use crate::dut::ssr::Device as SsrDevice;
+use crate::dut::ssr::learned::Learned;
 use crate::dut::ssr::points::{Device, DigitalIn, DigitalOut, Points};
 use crate::dut::{Procedure, Recipe};
 use crate::instrument::act::{Job, JobDone, RunnerState};
@@ -182,6 +183,8 @@ pub struct Bench {
     pub lead_opens_after: usize,
     /// Number of jobs after which the lead is whole again.
     pub lead_heals_after: usize,
+    /// What earlier parts of the lot have taught.
+    pub learned: Learned,
     jobs: usize,
     wiring: Arc<Wiring>,
     image: Image,
@@ -231,6 +234,7 @@ impl Bench {
             answer: (false, false),
             control_v: 0.0,
             ramp: Vec::new(),
+            learned: Learned::default(),
         }
     }
 
@@ -246,7 +250,8 @@ impl Bench {
             reference_parts: &ReferenceSet::default(),
             certificate: None,
         };
-        let device = SsrDevice::new(recipe, &ssr, &rig).unwrap();
+        let mut device = SsrDevice::new(recipe, &ssr, &rig).unwrap();
+        device.learned = self.learned;
         let order = TestOrder {
             thorough,
             teaching: None,

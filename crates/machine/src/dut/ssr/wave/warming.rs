@@ -32,9 +32,16 @@ pub struct Course {
     /// Factor by which the distance from the final value changes in each interval.
     ratio: f64,
     squares: f64,
+    count: usize,
 }
 
 impl Course {
+    /// Returns the standard deviation of the values around the course.
+    pub fn residual(&self) -> f64 {
+        // The fit has three parameters.
+        (self.squares / (self.count - 3) as f64).sqrt()
+    }
+
     /// Returns the value after this number of intervals; 0 is the cold part.
     pub fn at(&self, times: f64) -> f64 {
         self.end + self.rest * self.ratio.powf(times)
@@ -74,6 +81,7 @@ fn fitted(values: &[f64], ratio: f64) -> Course {
         rest,
         ratio,
         squares: off.map(|it| it * it).sum(),
+        count: values.len(),
     }
 }
 
