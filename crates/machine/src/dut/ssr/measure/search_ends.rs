@@ -4,9 +4,7 @@
 
 use super::conformity::{is_off, is_on};
 use super::given::{Given, NotDelivered};
-use super::stage::Stage;
 use super::state::{Next, State};
-use crate::dut::ssr::Finding;
 use crate::dut::ssr::parameter::Parameter;
 use crate::dut::ssr::plan::Plan;
 use crate::dut::ssr::points::{Device, Points};
@@ -75,8 +73,8 @@ pub fn acts(state: &State, plan: &Plan, points: &Points) -> Vec<Act> {
     steps.into_iter().flat_map(act).collect()
 }
 
-/// Concludes the ends: when one of them differs from its search, the thresholds are dropped and the part is void, for the
-/// cause that known states of the fixture show.
+/// Concludes the ends: drops both thresholds when one of the ends differs from its search. The limits stay proven, because
+/// other stages prove them.
 pub fn conclude(state: &mut State, given: &Given) -> Result<Next, NotDelivered> {
     if state.ends.both().is_none() {
         return Ok(Next::Planned);
@@ -85,8 +83,6 @@ pub fn conclude(state: &mut State, given: &Given) -> Result<Next, NotDelivered> 
     if !is_off(below) || !is_on(above) || is_off(held) || !is_off(dropped) {
         state.record.forget(Parameter::TurnOnVoltage);
         state.record.forget(Parameter::TurnOffVoltage);
-        state.doubted = Some(Finding::Contradictory.into());
-        return Ok(Next::Insert(Stage::Known));
     }
     Ok(Next::Planned)
 }

@@ -413,16 +413,18 @@ fn a_lead_that_breaks_and_heals_moves_no_threshold() {
         (Parameter::TurnOnVoltage, part.turn_on_v),
         (Parameter::TurnOffVoltage, part.turn_off_v),
     ];
-    let mut unsteady = 0;
+    let mut dropped = 0;
     for lasts in [1, 3, 10] {
         for jobs in 0..150 {
             let mut bench = Bench::with(good());
             (bench.lead_opens_after, bench.lead_heals_after) = (jobs, jobs + lasts);
             let test = bench.tested(recipe(&[]), false);
-            unsteady +=
-                usize::from(test.why_stopped() == Some(&Stop::Void(Finding::Contradictory.into())));
             for (of, volts) in truth.iter().filter(|_| test.verdict() == Verdict::Pass) {
-                let reading = test.record().result(*of).unwrap();
+                let record = test.record();
+                let Some(reading) = record.result(*of) else {
+                    dropped += 1;
+                    continue;
+                };
                 let error_v = (reading.value - volts).abs();
                 assert!(
                     error_v < 2.0 * reading.expanded(),
@@ -431,7 +433,7 @@ fn a_lead_that_breaks_and_heals_moves_no_threshold() {
             }
         }
     }
-    assert!(unsteady > 20, "{unsteady}");
+    assert!(dropped > 20, "{dropped}");
 }
 
 #[test]
