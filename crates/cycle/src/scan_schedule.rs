@@ -2,7 +2,7 @@
 //!
 //! Every second transaction polls the module with the emergency-stop contact; even a write waits for that poll. The
 //! transactions between these polls alternate between the beam of the awaited bin and the modules; every sixteenth of
-//! these transactions instead reads the reset status of a module. While a motion may arrive, the polls of modules go to the modules of
+//! them instead reads the reset status of a module. While a motion may arrive, the polls of modules go to the modules of
 //! its end sensors, as long as the others have not waited too long. When an actuator is not where it should be, the scan
 //! first reads the reset status of all modules. Each list has its own counter, so no list starves another.
 
@@ -301,6 +301,7 @@ mod tests {
         assert_eq!(shares(0x11, Span::ms(2)), [667, 67, 66]);
         let mut scan_schedule = ScanSchedule::new(None, vec![poll(0x12)], Vec::new());
         scan_schedule.hurry([poll(0x12)].into_iter());
+        assert!(scan_schedule.hurries());
         scan_schedule.hurry(std::iter::empty());
         assert!(!scan_schedule.hurries());
     }

@@ -18,7 +18,8 @@ pub(super) const BUS: &[Key] = keys! {
     key("heartbeat_ms", from_to(10.0, 10_000.0, "ms"), "cycle", "period of the host-OK broadcast on every line");
     key("host_watchdog_ms", from_to(100.0, 25_500.0, "ms"), "rig",
         "silence after which outputs go to their safe values; whole tenths of a second");
-    key("scan_period_ms", from_to(0.0, 1000.0, "ms"), "cycle", "pause of the motion scan while no motion may arrive; 0 polls without rest");
+    key("scan_period_ms", from_to(0.0, 1000.0, "ms"), "cycle",
+        "pause of the motion scan while no motion may arrive; 0 polls without rest");
 };
 
 pub(super) const HISTORY: &[Key] = keys! {

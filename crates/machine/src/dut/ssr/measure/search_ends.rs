@@ -52,15 +52,16 @@ pub fn are_doubtful(state: &State) -> bool {
     expected.is_none_or(|it| (off_v - it.at_v).abs() > UNLIKELY * it.reach_v)
 }
 
-/// Returns the acts: up through the ends of the turn-on voltage, then down through those of the turn-off voltage.
+/// Returns the acts: up through the ends of the turn-on voltage, then down through those of the turn-off voltage. The output
+/// conducts at the upper one of these only if it has turned on before, so the upper end of the turn-on voltage needs no
+/// reading.
 pub fn acts(state: &State, plan: &Plan, points: &Points) -> Vec<Act> {
     let Some([rising, falling]) = state.ends.both() else {
         return Vec::new();
     };
     let steps = [
         points.step(Device::SmuIn, 0.0, rising.0),
-        points.level(Device::SmuIn, rising.1),
-        points.level(Device::SmuIn, falling.1),
+        points.step(Device::SmuIn, rising.1, falling.1),
         points.level(Device::SmuIn, falling.0),
     ];
     let act = |step| {
@@ -79,8 +80,8 @@ pub fn conclude(state: &mut State, given: &Given) -> Result<Next, NotDelivered> 
     if state.ends.both().is_none() {
         return Ok(Next::Planned);
     }
-    let [below, above, held, dropped] = given.singles(Device::SmuOut)?;
-    if !is_off(below) || !is_on(above) || is_off(held) || !is_off(dropped) {
+    let [below, held, dropped] = given.singles(Device::SmuOut)?;
+    if !is_off(below) || !is_on(held) || !is_off(dropped) {
         state.record.forget(Parameter::TurnOnVoltage);
         state.record.forget(Parameter::TurnOffVoltage);
     }
