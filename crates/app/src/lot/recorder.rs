@@ -3,8 +3,8 @@
 //! Between lots the history has no run until a part found inside needs a row; then the run of lot
 //! [`FOUND_LOT`](super::FOUND_LOT) begins. One transaction writes all pending rows; [`Recorder::commit`] then returns
 //! the ordinal (number within the run) of the last judged part, whose publication allows the sorter to open its
-//! gripper. After a failed transaction its rows stay pending, in order. While the cycle runs, the database works on a
-//! blocking thread, one short task per transaction.
+//! gripper. After a failed transaction its rows stay pending, in order. While the cycle runs in real time, the database
+//! works on a blocking thread, one short task per transaction; in virtual time, which stops meanwhile, it works at once.
 
 use super::event::LotEvent;
 use super::journal::Journal;
@@ -37,6 +37,7 @@ pub(super) struct Recorder {
     contents: Option<(Inside, Uses)>,
     /// Contents of the machine in the last row of them, written or waiting.
     recorded: Inside,
+    is_virtual: bool,
     /// Wall time of all transactions so far.
     pub writing: Duration,
 }
@@ -56,6 +57,7 @@ impl Recorder {
             judged: None,
             contents: None,
             recorded: Inside::default(),
+            is_virtual: context.source.is_virtual(),
             writing: Duration::ZERO,
         };
         if !context.purpose.is_between_lots() {
@@ -233,12 +235,16 @@ impl Recorder {
             let from = Instant::now();
             let rows = std::mem::take(&mut self.rows);
             let mut store = self.store.take().context("the history is closed")?;
-            let (store, rows, written) = tokio::task::spawn_blocking(move || {
+            let write = move || {
                 let written = store.record(&rows);
                 (store, rows, written)
-            })
-            .await
-            .context("the history writer ended")?;
+            };
+            let (store, rows, written) = match self.is_virtual {
+                true => write(),
+                false => tokio::task::spawn_blocking(write)
+                    .await
+                    .context("the history writer ended")?,
+            };
             self.store = Some(store);
             self.writing += from.elapsed();
             if let Err(error) = written {

@@ -21,11 +21,15 @@ const RTOL: f64 = 1e-6;
 /// an eighth of the force with which a relay without current rests on its stop, so that the integration begins before
 /// the armature leaves.
 const LEAST_PUSH_N: f64 = 0.005;
-/// Speed above which the armature is not at rest, m/s; slower hops stay below 0.2 um.
+/// Height of the hops on a stop up to which the armature counts as at rest, m: a five-hundredth of its travel, which
+/// moves the tip of a pressed leaf by nanometres.
+const HOP_M: f64 = 1e-6;
+/// Speed above which the tip of the leaf is not at rest, m/s.
 const CALM_M_PER_S: f64 = 4e-3;
-/// Distance from equilibrium above which the armature is not at rest, m.
+/// Distance of the tip from equilibrium above which it is not at rest, m.
 const CALM_M: f64 = 2e-7;
-/// Interval at which the motion checks whether a moving armature has come to rest, s.
+/// Interval at which the motion checks whether an armature on a stop has come to rest, and whether a leaf can be
+/// condensed, s.
 const LOOK_S: f64 = 5e-4;
 /// Longest step of the flux while held, s.
 const FLUX_STEP_S: f64 = 1e-3;
@@ -145,7 +149,8 @@ impl Motion {
                 return Ok(None);
             }
             let from_s = self.solver.t_s;
-            let goal = until_s.min(from_s + LOOK_S);
+            let looks = self.is_on_a_stop() || !self.solver.is_condensed();
+            let goal = until_s.min(if looks { from_s + LOOK_S } else { until_s });
             let event = self.solver.advance(&self.model, &self.drive, goal)?;
             self.levels.moving_s += self.solver.t_s - from_s;
             if event.is_none() {
@@ -160,17 +165,24 @@ impl Motion {
         }
     }
 
-    /// Checks whether armature and leaf are in equilibrium with the flux.
+    fn is_on_a_stop(&self) -> bool {
+        let modes = self.solver.modes;
+        modes.is_engaged(Element::Backstop) || modes.is_engaged(Element::Seat)
+    }
+
+    /// Checks whether armature and leaf are in equilibrium with the flux, but for hops of the armature below [`HOP_M`].
     fn is_calm(&self) -> bool {
         let now = &self.solver.state;
-        let on_a_stop = [Element::Backstop, Element::Seat].map(|it| self.touches(it));
-        if on_a_stop == [false, false] || now[V].abs() > CALM_M_PER_S || now[W].abs() > CALM_M_PER_S
-        {
+        if !self.is_on_a_stop() || now[W].abs() > CALM_M_PER_S {
             return false;
         }
         let mut still = *now;
         let push = self.model.pressed(&mut still);
-        push > LEAST_PUSH_N && [X, Y].iter().all(|&i| (now[i] - still[i]).abs() < CALM_M)
+        let kinetic = 0.5 * self.model.parameters().m_a * now[V] * now[V];
+        push > LEAST_PUSH_N
+            && kinetic < push * HOP_M
+            && (now[X] - still[X]).abs() < HOP_M
+            && (now[Y] - still[Y]).abs() < CALM_M
     }
 
     fn flux_rate(&self, s: &State) -> f64 {

@@ -60,6 +60,7 @@ impl Model {
         let (current, pull) = self.magnet(lambda, x);
         let overlap = self.tip_overlap(y);
         let (r, force) = self.pressed_tip(overlap);
+        let per_mass = 1.0 / (p.m_a + p.m_c * r * r);
         let turn = 0.5 * r * r * (1.0 - r) / overlap;
         let turn = if y < 0.5 * p.G { turn } else { -turn };
         let drag =
@@ -71,7 +72,7 @@ impl Model {
         if modes.is_engaged(Element::Seat) {
             load += self.stop.push(x - p.X, v);
         }
-        let armature = (pull - load) / (p.m_a + p.m_c * r * r);
+        let armature = (pull - load) * per_mass;
         let flux = self.flux_rate(t_s, current, modes, drive);
         [flux, v, armature, r * v, 0.0]
     }

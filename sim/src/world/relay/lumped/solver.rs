@@ -6,7 +6,8 @@
 //!   of the method. Of several changes in one step, the earliest counts.
 //! - Two opposite changes within one step leave the signs unchanged. A cubic through the overlap of a stop and its rate
 //!   at both ends of the step reveals them: where the cubic turns close to the touch, the step ends there.
-//! - The step after a change is short.
+//! - The step after a change is short. A body that leaves a stop ends its step just behind it, because beyond the touch
+//!   the force has a kink that a method of high order does not pass.
 //! - On request the leaf is condensed while it presses on a contact ([`super::condensed`]): then the steps need not
 //!   resolve the swing of its tip.
 
@@ -48,10 +49,17 @@ pub enum SolveError {
     },
 }
 
-/// First step, and longest step after an event, s; the contacts oscillate with periods of 50 us and longer.
-const SHORT_S: f64 = 1e-6;
-/// Longest step after the end of the condensation, s: half a radian of the swing of the tip.
+/// First step, s.
+const FIRST_S: f64 = 1e-6;
+/// Longest step after a touch, s; the contacts oscillate with periods of 50 us and longer.
+const TOUCHED_S: f64 = 4e-6;
+/// Longest step after a body has become free, and after the end of the condensation, s: half a radian of the swing of
+/// the tip.
 const RELEASED_S: f64 = 2e-5;
+/// Time to the end of a touch beyond which a step may reach, as a factor of the time at the present speed.
+const BEYOND_TOUCH: f64 = 1.05;
+/// Shortest step towards the end of a touch, s.
+const TO_TOUCH_S: f64 = 1e-8;
 /// Longest step, s: a few time constants of the flux.
 const LONG_S: f64 = 2e-3;
 /// Shortest useful step, s: the rounding of the instant itself.
@@ -90,7 +98,7 @@ impl Solver {
             evaluations: 0,
             steps: 0,
             tolerance: Tolerance { relative },
-            h: SHORT_S,
+            h: FIRST_S,
             condensed: false,
         }
     }
@@ -114,7 +122,7 @@ impl Solver {
         let mut slope = self.rates(model, drive);
         while self.t_s < until_s {
             let whole = until_s - self.t_s;
-            let h = self.h.min(LONG_S).min(whole);
+            let h = self.h.min(LONG_S).min(whole).min(self.leaving_s(model));
             let tried = self.attempt(model, drive, &slope, h);
             self.control(tried.error, h)?;
             if tried.error.is_nan() || tried.error > 1.0 {
@@ -149,11 +157,30 @@ impl Solver {
         }
     }
 
+    /// Checks whether the leaf is condensed.
+    pub fn is_condensed(&self) -> bool {
+        self.condensed
+    }
+
     /// Puts an armature at rest on a stop, with its leaf, into this state; the flags follow from it.
     pub fn rest(&mut self, model: &Model, drive: &Drive, state: State) {
         self.state = state;
         self.modes = model.modes(&state, drive);
         self.condensed = false;
+    }
+
+    /// Returns the longest step of a body that leaves a stop or contact, s; infinite while none leaves.
+    fn leaving_s(&self, model: &Model) -> f64 {
+        let mut first = f64::INFINITY;
+        for element in Element::TOUCHING {
+            let follows = self.condensed && matches!(element, Element::Nc | Element::No);
+            let rate = model.stops.rate(element, &self.state);
+            if self.modes.is_engaged(element) && rate < 0.0 && !follows {
+                let free_s = model.stops.overlap(element, &self.state) / -rate;
+                first = first.min(TO_TOUCH_S.max(BEYOND_TOUCH * free_s));
+            }
+        }
+        first
     }
 
     /// Gives the tip its own motion again.
@@ -227,7 +254,7 @@ impl Solver {
         self.t_s += h;
         self.state = state;
         self.modes.set(element, on);
-        self.h = self.h.min(SHORT_S);
+        self.h = self.h.min(if on { TOUCHED_S } else { RELEASED_S });
         Event {
             t_s: self.t_s,
             element,

@@ -86,3 +86,41 @@ fn a_step_near_the_dynamic_threshold_takes_the_reference_time() {
         );
     }
 }
+
+/// Returns the makes of the normally open contact under a sequence of steps, each `[instant, volts]` in seconds: by the
+/// levels of detail, and by all five states.
+fn makes(steps: &[[f64; 2]], end_s: f64) -> [Vec<f64>; 2] {
+    let model = Model::new(&Parameters::default());
+    let start = model.at_rest(0.0);
+    let mut motion = Motion::from_equilibrium(model.clone(), 0.0, Drive::still(0.0), start);
+    let mut own = Vec::new();
+    let ends = steps.iter().skip(1).map(|step| step[0]).chain([end_s]);
+    for (&[_, volts], end) in steps.iter().zip(ends) {
+        motion.set(Drive::still(volts), model.ohm());
+        own.extend(std::iter::from_fn(|| motion.advance(end)));
+    }
+    let held = steps
+        .windows(2)
+        .flat_map(|pair| [pair[0], [pair[1][0], pair[0][1]]]);
+    let wave = held.chain(steps.last().copied()).collect();
+    let excitation = Excitation::Source(Waveform::new(wave).unwrap());
+    let whole = model.transient(start, &excitation, end_s, 1e-10).unwrap();
+    [own, whole.events].map(|events| {
+        let makes = events
+            .iter()
+            .filter(|it| it.element == Element::No && it.on);
+        makes.map(|it| it.t_s).collect()
+    })
+}
+
+#[test]
+fn hops_left_out_hardly_move_the_next_operation() {
+    for after_ms in [12.0, 13.0, 14.0, 15.0, 16.0, 18.0, 20.0, 30.0] {
+        let again = 0.02 + 1e-3 * after_ms;
+        let steps = [[0.0, 12.0], [0.02, 0.0], [again, 12.0]];
+        let [own, whole] = makes(&steps, again + 0.01);
+        let first = |makes: &[f64]| makes.iter().copied().find(|at| *at > again).unwrap();
+        let off_s = (first(&own) - first(&whole)).abs();
+        assert!(off_s < 5e-7, "{after_ms} ms after the release: {off_s:e} s");
+    }
+}
