@@ -268,15 +268,19 @@ impl Motion {
         push
     }
 
-    /// Returns the mean rate of change of the flux over a step, by the classical Runge-Kutta method of order 4.
+    /// Returns the mean rate of change of the flux over a step, by the classical Runge-Kutta method of order 4. The
+    /// travel of the armature, nanometres in a step, counts as linear in time.
     fn mean_rate(&self, s: &State, blocked: bool, h: f64) -> f64 {
-        let at = |rate: f64, part: f64| {
-            let mut s = *s;
-            s[LAMBDA] += part * h * rate;
-            self.model.pressed(&mut s);
-            self.branch_rate(&s, blocked)
-        };
         let first = self.branch_rate(s, blocked);
+        let mut end = *s;
+        end[LAMBDA] += h * first;
+        self.model.pressed(&mut end);
+        let at = |rate: f64, part: f64| {
+            let mut then = *s;
+            then[LAMBDA] += part * h * rate;
+            then[X] += part * (end[X] - s[X]);
+            self.branch_rate(&then, blocked)
+        };
         let second = at(first, 0.5);
         let third = at(second, 0.5);
         let fourth = at(third, 1.0);
