@@ -15,7 +15,7 @@ use units::RigTime;
 #[derive(Debug)]
 pub struct Timer {
     pace: Pace,
-    /// Kernel timer, created at the first wait; `None` at virtual pace, or when the kernel refuses it.
+    /// Kernel timer, created at the first wait at real pace; `None` when the kernel refuses it.
     fd: OnceLock<Option<Receiver>>,
 }
 
@@ -31,12 +31,14 @@ impl Timer {
     /// Waits until `until`; returns at once if that time has passed. A dropped wait leaves nothing behind. Panics
     /// outside a tokio runtime with I/O, and in another runtime than that of the first wait.
     pub async fn until(&self, until: RigTime) {
+        if self.pace.is_virtual() {
+            return self.pace.sleep_until(until).await;
+        }
         let now = self.pace.now();
         if now >= until {
             return;
         }
-        let is_real = !self.pace.is_virtual();
-        let fd = self.fd.get_or_init(|| is_real.then(kernel_timer)?.ok());
+        let fd = self.fd.get_or_init(|| kernel_timer().ok());
         match fd.as_ref().filter(|fd| arm(fd, until.since(now).0).is_ok()) {
             Some(fd) => fired(fd).await,
             None => self.pace.sleep_until(until).await,

@@ -68,11 +68,9 @@ use machine::station::turn::{Ending, HistoryState, Inputs, TurnOutput};
 use machine::view::{self, OrderRequest};
 pub use orders::PANEL;
 pub use profile::Profile;
-use profile::lap;
 pub use publish::line as alarm_line;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
 use texts::Message;
 use tokio::runtime::Handle;
 use tokio::sync::{mpsc, watch};
@@ -246,22 +244,21 @@ impl Cycle {
         self.verified = false;
         loop {
             let now = self.pace.now();
-            let mut clock = Instant::now();
-            self.profile.turns += 1;
+            let mut stopwatch = self.profile.turn();
             self.scan(now);
-            lap(&mut self.profile.scan_s, &mut clock);
+            stopwatch.lap(&mut self.profile.scan_s);
             let mut output = self.step(now);
-            lap(&mut self.profile.step_s, &mut clock);
+            stopwatch.lap(&mut self.profile.step_s);
             self.clear(now, &mut output);
-            lap(&mut self.profile.clear_s, &mut clock);
+            stopwatch.lap(&mut self.profile.clear_s);
             self.apply(now, &mut output);
-            lap(&mut self.profile.apply_s, &mut clock);
+            stopwatch.lap(&mut self.profile.apply_s);
             self.answer(&mut output, now);
             self.pressed(&mut output, now);
             self.record(now, &mut output);
-            clock = Instant::now();
+            stopwatch.skip();
             self.publish(now, output.record.ending.is_some());
-            lap(&mut self.profile.publish_s, &mut clock);
+            stopwatch.lap(&mut self.profile.publish_s);
             if output.rig.verify {
                 self.verify().await;
             }
