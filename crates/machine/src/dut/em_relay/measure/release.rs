@@ -219,7 +219,9 @@ pub(super) fn acts_fine(
         acts.push(ramp);
     } else if board.supply.fine() < way {
         let (fine, takes) = board.supply.ramp_fine(way);
-        board.still_ramping = takes;
+        // After a missed ramp the output still falls; it may lie above `way` and then falls only as far as that.
+        let falls = board.still_ramping.0.saturating_sub(takes.0);
+        board.still_ramping = takes.max(Span(falls) + RAMP_MARGIN);
         acts.push(fine);
     }
     let least = board.supply.coarse() + board.supply.fine() + jump;

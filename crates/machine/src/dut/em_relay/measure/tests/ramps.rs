@@ -125,6 +125,24 @@ fn a_release_ramp_waits_for_the_ramp_before() {
 }
 
 #[test]
+fn a_repeated_release_ramp_waits_for_the_missed_one() {
+    let (context, mut state) = (context(), at_23_c());
+    state.plan.expect(Direction::Rising, within(7.8, 0.18));
+    state.enter(Stage::OperateFine(0), &context);
+    let operated = watched(true, PULLED, 400.0);
+    fine::conclude(&context, &operated, &mut state, (Direction::Rising, 0));
+    state.plan.expect(Direction::Falling, within(2.3, 0.07));
+    state.enter(Stage::ReleaseFine(0), &context);
+    let premature = watched(true, RESTING, 10.0);
+    let next = fine::conclude(&context, &premature, &mut state, (Direction::Falling, 0));
+    assert_eq!(next, Some(Stage::ReleaseFine(1)));
+    let acts = state.enter(Stage::ReleaseFine(1), &context);
+    // The fine output falls from 0.60 V to 0.375 V and turns to 0.464 V on its way, at 1.5 V/s.
+    let armed_ms = until_armed(&acts).as_seconds() * 1e3;
+    assert!((90.0..110.0).contains(&armed_ms), "{armed_ms}");
+}
+
+#[test]
 fn a_repeat_keeps_the_first_fine_indication() {
     let (context, mut state) = (context(), at_23_c());
     state
