@@ -178,37 +178,53 @@ impl Cycle {
 }
 
 fn buttons(station: &Station) -> Vec<Button> {
-    let button = |order: &str, with: &str, may: Result<(), Refused>| {
-        let why = may.err().map(|why| why.message());
-        let said = |lang| why.as_ref().map(|it| it.say(lang)).unwrap_or_default();
-        Button {
-            order: order.into(),
-            with: with.into(),
-            enabled: why.is_none(),
-            why_en: said(Lang::En),
-            why_zh: said(Lang::Zh),
-            why,
-        }
-    };
     let commands = Command::ALL
         .iter()
-        .map(|command| button(command.name(), "", station.may(*command)));
+        .map(|it| (it.name(), "", station.may(*it)));
     let modes = Mode::ALL
         .iter()
-        .map(|mode| button("mode", mode.name(), station.may_change_mode()));
+        .map(|it| ("mode", it.name(), station.may_change_mode()));
     let jogs = orders::JOGS
         .iter()
-        .map(|it| button("jog", it.code(), station.may_jog()));
-    commands
-        .chain(modes)
-        .chain(jogs)
-        .chain([
-            button("step", "", station.may_step()),
-            button("lamp_test", "", Ok(())),
-            button("start", "lot", station.may_leave()),
-            button("close_lot", "", station.may_close()),
-        ])
-        .collect()
+        .map(|it| ("jog", it.code(), station.may_jog()));
+    let others = [
+        ("step", "", station.may_step()),
+        ("lamp_test", "", Ok(())),
+        ("start", "lot", station.may_leave()),
+        ("close_lot", "", station.may_close()),
+    ];
+    let mut refusals = Refusals::default();
+    let button = |(order, with, may): (&str, &str, Result<(), Refused>)| Button {
+        order: order.into(),
+        with: with.into(),
+        enabled: may.is_ok(),
+        ..may.err().map(|why| refusals.of(why)).unwrap_or_default()
+    };
+    let all = commands.chain(modes).chain(jogs).chain(others);
+    all.map(button).collect()
+}
+
+/// Refused buttons by their reason. Most of them share a few reasons, and the texts of a reason take longer than all
+/// else of the view.
+#[derive(Default)]
+struct Refusals(Vec<(Refused, Button)>);
+
+impl Refusals {
+    /// Returns a button without an order that is refused for this reason.
+    fn of(&mut self, why: Refused) -> Button {
+        if let Some((_, known)) = self.0.iter().find(|it| it.0 == why) {
+            return known.clone();
+        }
+        let message = why.message();
+        let refused = Button {
+            why_en: message.say(Lang::En),
+            why_zh: message.say(Lang::Zh),
+            why: Some(message),
+            ..Button::default()
+        };
+        self.0.push((why, refused.clone()));
+        refused
+    }
 }
 
 fn places(station: &Station) -> BTreeMap<String, Token> {
