@@ -106,16 +106,20 @@ pub fn attributes(lang: Lang, id: &str) -> BTreeSet<&'static str> {
     all.map(|it| it.id()).collect()
 }
 
-/// Returns the names of the arguments of a text or attribute; `None` for an unknown text or attribute.
-pub fn arguments(lang: Lang, id: &str, attribute: Option<&str>) -> Option<BTreeSet<&'static str>> {
-    let elements = pattern(lang, id, attribute)?.elements.iter();
+/// Returns the names of the arguments that a text uses.
+pub(crate) fn used(pattern: &Text) -> impl Iterator<Item = &'static str> {
     let name = |element: &PatternElement<&'static str>| match element {
         PatternElement::Placeable {
             expression: Expression::Inline(InlineExpression::VariableReference { id }),
         } => Some(id.name),
         _ => None,
     };
-    Some(elements.filter_map(name).collect())
+    pattern.elements.iter().filter_map(name)
+}
+
+/// Returns the names of the arguments of a text or attribute; `None` for an unknown text or attribute.
+pub fn arguments(lang: Lang, id: &str, attribute: Option<&str>) -> Option<BTreeSet<&'static str>> {
+    pattern(lang, id, attribute).map(|pattern| used(pattern).collect())
 }
 
 /// Returns every text without arguments, in the order of the English file.

@@ -2,7 +2,6 @@
 
 use crate::catalogue::Text as Pattern;
 use crate::{Lang, catalogue, json_form};
-use fluent_bundle::FluentArgs;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -103,16 +102,16 @@ impl Args {
         self.with(name, inner.code())
     }
 
-    fn fluent(&self, lang: Lang) -> FluentArgs<'_> {
+    /// Returns the text of a pattern with these arguments; `None` when one is missing.
+    fn fill(&self, lang: Lang, pattern: &'static Pattern) -> Option<String> {
         let said = |name: &str, code| match family(name) {
             Some(family) if LISTS.contains(&family) => Cow::Owned(listed(lang, family, code)),
             Some(family) => self.named(lang, name, family, code),
             None => Cow::Borrowed(code),
         };
-        let pairs = self.0.iter();
-        pairs
-            .map(|(name, value)| (name.as_ref(), said(name, value)))
-            .collect()
+        let own = |name| self.get(name).map(|code| (name, said(name, code)));
+        let used = catalogue::used(pattern).filter_map(own);
+        catalogue::filled(lang, pattern, &used.collect())
     }
 
     /// Returns the text that replaces `code`, the value of argument `name`. This text may use the other arguments, as
@@ -125,8 +124,7 @@ impl Args {
         };
         let mut others = self.clone();
         others.0.remove(name);
-        let text = catalogue::filled(lang, pattern, &others.fluent(lang));
-        Cow::Owned(text.unwrap_or_default())
+        Cow::Owned(others.fill(lang, pattern).unwrap_or_default())
     }
 }
 
@@ -222,13 +220,13 @@ impl Message {
     /// Returns the text; `None` when the text is unknown or an argument is missing, as may happen with a message that
     /// another version stored.
     pub fn try_say(&self, lang: Lang) -> Option<String> {
-        catalogue::filled(lang, self.pattern(lang)?, &self.args.fluent(lang))
+        self.args.fill(lang, self.pattern(lang)?)
     }
 
     /// Returns an attribute of the text; `None` when the text lacks the attribute, or when an argument is missing.
     pub fn try_attribute(&self, lang: Lang, attribute: &str) -> Option<String> {
         let pattern = catalogue::pattern(lang, &self.id(), Some(attribute))?;
-        catalogue::filled(lang, pattern, &self.args.fluent(lang))
+        self.args.fill(lang, pattern)
     }
 
     /// Returns the attribute for the selected case, or else the text itself, because the case may concern the text of
