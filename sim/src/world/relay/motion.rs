@@ -21,19 +21,18 @@ const RTOL: f64 = 1e-6;
 /// an eighth of the force with which a relay without current rests on its stop, so that the integration begins before
 /// the armature leaves.
 const LEAST_PUSH_N: f64 = 0.005;
-/// Height of the hops on a stop up to which the armature counts as at rest, m: a five-hundredth of its travel, which
-/// moves the tip of a pressed leaf by nanometres.
-const HOP_M: f64 = 1e-6;
+/// Height of the hops on a stop up to which the armature counts as at rest, m. Hops of 0.2 um would move an operation that
+/// follows within 40 ms by more than a microsecond. The energy of motion and of the compressed stop decides.
+const HOP_M: f64 = 5e-8;
 /// Speed above which the tip of the leaf is not at rest, m/s.
 const CALM_M_PER_S: f64 = 4e-3;
 /// Distance of the tip from equilibrium above which it is not at rest, m.
 const CALM_M: f64 = 2e-7;
-/// Interval at which the motion checks whether an armature on a stop has come to rest, and whether a leaf can be
-/// condensed, s.
+/// Interval at which the motion checks, between touches of a stop, whether armature and leaf have come to rest, s.
 const LOOK_S: f64 = 5e-4;
 /// Longest step of the flux while held, s.
 const FLUX_STEP_S: f64 = 1e-3;
-/// Longest step of the flux as a fraction of its time constant, for a relative error below 1e-6. Behind a blocking
+/// Longest step of the flux as a fraction of its time constant, for a relative error below 1e-4. Behind a blocking
 /// suppression eddy currents alone carry the flux with a time constant down to 0.05 ms.
 const FLUX_STEP_SHARE: f64 = 0.125;
 /// Limit of the trials that shorten a step to the instant at which the suppression blocks; four are usual.
@@ -149,11 +148,11 @@ impl Motion {
                 return Ok(None);
             }
             let from_s = self.solver.t_s;
-            let looks = self.is_on_a_stop() || !self.solver.is_condensed();
-            let goal = until_s.min(if looks { from_s + LOOK_S } else { until_s });
+            let goal = until_s.min(from_s + LOOK_S);
             let event = self.solver.advance(&self.model, &self.drive, goal)?;
             self.levels.moving_s += self.solver.t_s - from_s;
-            if event.is_none() {
+            let stops = [Element::Backstop, Element::Seat];
+            if event.is_none_or(|it| it.on && stops.contains(&it.element)) {
                 self.held = self.is_calm();
             }
             if !self.held {
@@ -165,23 +164,21 @@ impl Motion {
         }
     }
 
-    fn is_on_a_stop(&self) -> bool {
-        let modes = self.solver.modes;
-        modes.is_engaged(Element::Backstop) || modes.is_engaged(Element::Seat)
-    }
-
     /// Checks whether armature and leaf are in equilibrium with the flux, but for hops of the armature below [`HOP_M`].
     fn is_calm(&self) -> bool {
         let now = &self.solver.state;
-        if !self.is_on_a_stop() || now[W].abs() > CALM_M_PER_S {
+        let modes = self.solver.modes;
+        let on_a_stop = [Element::Backstop, Element::Seat].map(|it| modes.is_engaged(it));
+        if on_a_stop == [false, false] || now[W].abs() > CALM_M_PER_S {
             return false;
         }
         let mut still = *now;
         let push = self.model.pressed(&mut still);
+        let [depth, rest] = [now, &still].map(|it| self.model.overlap_of_stop(it[X]));
+        let elastic = self.model.stop_energy(depth) - self.model.stop_energy(rest);
         let kinetic = 0.5 * self.model.parameters().m_a * now[V] * now[V];
         push > LEAST_PUSH_N
-            && kinetic < push * HOP_M
-            && (now[X] - still[X]).abs() < HOP_M
+            && kinetic + elastic - push * (depth - rest) < push * HOP_M
             && (now[Y] - still[Y]).abs() < CALM_M
     }
 
@@ -269,7 +266,7 @@ impl Motion {
     }
 
     /// Returns the mean rate of change of the flux over a step, by the classical Runge-Kutta method of order 4. The
-    /// travel of the armature, nanometres in a step, counts as linear in time.
+    /// travel of the armature, up to 0.15 um in a step on the seat, counts as linear in time.
     fn mean_rate(&self, s: &State, blocked: bool, h: f64) -> f64 {
         let first = self.branch_rate(s, blocked);
         let mut end = *s;

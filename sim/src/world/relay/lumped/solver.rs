@@ -6,8 +6,8 @@
 //!   of the method. Of several changes in one step, the earliest counts.
 //! - Two opposite changes within one step leave the signs unchanged. A cubic through the overlap of a stop and its rate
 //!   at both ends of the step reveals them: where the cubic turns close to the touch, the step ends there.
-//! - The step after a change is short. A body that leaves a stop ends its step just behind it, because beyond the touch
-//!   the force has a kink that a method of high order does not pass.
+//! - The step after a change is short. While a body leaves a stop, the step ends just behind the end of the touch: the
+//!   force has a kink there, over which a method of high order would need many trials.
 //! - On request the leaf is condensed while it presses on a contact ([`super::condensed`]): then the steps need not
 //!   resolve the swing of its tip.
 
@@ -51,13 +51,14 @@ pub enum SolveError {
 
 /// First step, s.
 const FIRST_S: f64 = 1e-6;
-/// Longest step after a touch, s; the contacts oscillate with periods of 50 us and longer.
+/// Longest step after an element has engaged, s; the contacts oscillate with periods of 50 us and longer.
 const TOUCHED_S: f64 = 4e-6;
-/// Longest step after a body has become free, and after the end of the condensation, s: half a radian of the swing of
-/// the tip.
+/// Longest step after an element has become free, and after the end of the condensation, s: half a radian of the swing
+/// of the tip.
 const RELEASED_S: f64 = 2e-5;
-/// Time to the end of a touch beyond which a step may reach, as a factor of the time at the present speed.
-const BEYOND_TOUCH: f64 = 1.05;
+/// Longest step towards the end of a touch, as a multiple of the time that the touch lasts at the present speed. What
+/// lies behind the kink escapes the estimate of the error: 1.05 would move an operation close to its threshold by 1 %.
+const BEYOND_TOUCH: f64 = 1.0001;
 /// Shortest step towards the end of a touch, s.
 const TO_TOUCH_S: f64 = 1e-8;
 /// Longest step, s: a few time constants of the flux.
@@ -155,11 +156,6 @@ impl Solver {
             self.state[Y] = model.resting_tip(&self.state);
             self.condensed = true;
         }
-    }
-
-    /// Checks whether the leaf is condensed.
-    pub fn is_condensed(&self) -> bool {
-        self.condensed
     }
 
     /// Puts an armature at rest on a stop, with its leaf, into this state; the flags follow from it.

@@ -219,7 +219,8 @@ pub(super) fn acts_fine(
         acts.push(ramp);
     } else if board.supply.fine() < way {
         let (fine, takes) = board.supply.ramp_fine(way);
-        // After a missed ramp the output still falls; it may lie above `way` and then falls only as far as that.
+        // After a missed ramp the output still falls. If it is below `way` now, it rises by no more than the act says; if
+        // it is above, it falls only as far as `way`. Both count from the mark of the seal, which follows this act.
         let falls = board.still_ramping.0.saturating_sub(takes.0);
         board.still_ramping = takes.max(Span(falls) + RAMP_MARGIN);
         acts.push(fine);
