@@ -17,6 +17,8 @@ use super::lumped::{Drive, Element, Event, LAMBDA, Model, SolveError, Solver, St
 
 /// Relative tolerance of a step: it locates instants to a nanosecond, while the counters resolve 20 us.
 const RTOL: f64 = 1e-6;
+/// Stops of the armature.
+const STOPS: [Element; 2] = [Element::Backstop, Element::Seat];
 /// Force on a stop up to which the model integrates the motion of the armature, N; above it the armature rests. It is
 /// an eighth of the force with which a relay without current rests on its stop, so that the integration begins before
 /// the armature leaves.
@@ -151,8 +153,7 @@ impl Motion {
             let goal = until_s.min(from_s + LOOK_S);
             let event = self.solver.advance(&self.model, &self.drive, goal)?;
             self.levels.moving_s += self.solver.t_s - from_s;
-            let stops = [Element::Backstop, Element::Seat];
-            if event.is_none_or(|it| it.on && stops.contains(&it.element)) {
+            if event.is_none_or(|it| it.on && STOPS.contains(&it.element)) {
                 self.held = self.is_calm();
             }
             if !self.held {
@@ -167,15 +168,17 @@ impl Motion {
     /// Checks whether armature and leaf are in equilibrium with the flux, but for hops of the armature below [`HOP_M`].
     fn is_calm(&self) -> bool {
         let now = &self.solver.state;
-        let modes = self.solver.modes;
-        let on_a_stop = [Element::Backstop, Element::Seat].map(|it| modes.is_engaged(it));
-        if on_a_stop == [false, false] || now[W].abs() > CALM_M_PER_S {
+        let engaged = |it: &Element| self.solver.modes.is_engaged(*it);
+        let Some(stop) = STOPS.into_iter().find(engaged) else {
+            return false;
+        };
+        if now[W].abs() > CALM_M_PER_S {
             return false;
         }
         let mut still = *now;
         let push = self.model.pressed(&mut still);
-        let [depth, rest] = [now, &still].map(|it| self.model.overlap_of_stop(it[X]));
-        let elastic = self.model.stop_energy(depth) - self.model.stop_energy(rest);
+        let [depth, rest] = [now, &still].map(|it| self.model.stops.overlap(stop, it));
+        let elastic = self.model.stop.energy(depth) - self.model.stop.energy(rest);
         let kinetic = 0.5 * self.model.parameters().m_a * now[V] * now[V];
         push > LEAST_PUSH_N
             && kinetic + elastic - push * (depth - rest) < push * HOP_M

@@ -19,7 +19,8 @@ pub struct Model {
     per_mass: [f64; 2],
     /// Positions of the stops of the relay, m.
     pub stops: StopPositions,
-    pub(super) stop: Stop,
+    /// Stiffness and loss of backstop and seat.
+    pub stop: Stop,
     pub(super) contact: Stop,
 }
 

@@ -193,16 +193,6 @@ impl Model {
         }
     }
 
-    /// Returns the overlap of the armature with the stop nearer to it, m; negative without a touch.
-    pub fn overlap_of_stop(&self, x: f64) -> f64 {
-        if x > 0.5 * self.p.X { x - self.p.X } else { -x }
-    }
-
-    /// Returns the elastic energy of a stop at an overlap of `depth` (m), J; zero without a touch.
-    pub fn stop_energy(&self, depth: f64) -> f64 {
-        0.4 * self.stop.k * depth.max(0.0).powf(2.5)
-    }
-
     /// Sets travel and leaf of an armature on a stop under the flux of the state; returns the force on that stop,
     /// N, negative where the stop would have to pull.
     pub fn pressed(&self, s: &mut State) -> f64 {

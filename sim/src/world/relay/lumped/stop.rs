@@ -24,6 +24,11 @@ impl Stop {
         self.k * depth * depth.sqrt() * loss
     }
 
+    /// Returns the elastic energy at an overlap of `depth` (m), J; zero without overlap.
+    pub fn energy(self, depth: f64) -> f64 {
+        0.4 * self.k * depth.max(0.0).powf(2.5)
+    }
+
     /// Returns the overlap that carries a static force in N, m.
     pub fn depth(self, force: f64) -> f64 {
         (force.max(0.0) / self.k).cbrt().powi(2)
