@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
-import { leave, looks, open, picture, shown, visit } from "./browser.mjs";
+import { clickRefused, leave, looks, open, picture, shown, visit } from "./browser.mjs";
 import { WORDS, addPerson, serveIn } from "./rig.mjs";
 
 const CONFIG = "config-approval";
@@ -80,7 +80,7 @@ test("a second engineer approves what the first one saved", async () => {
   await saver.route("**/api/recipes/show*", (route) => late.then(() => route.continue()), { times: 1 });
   const read = saver.waitForResponse("**/api/recipes/show*");
   await saver.click("#language");
-  await saver.click("#r_approve", { force: true });
+  await clickRefused(saver.locator("#r_approve"));
   await shown(saver, "#r_answer", WORDS["r-signed"].zh);
   // The answer outlasts a read that began before the order, and follows the language.
   letGo();

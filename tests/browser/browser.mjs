@@ -55,6 +55,12 @@ export async function press(page, button) {
   await page.click(button);
 }
 
+/** Clicks a button that may be disabled, once it is in view: the page answers with its reason. */
+export async function clickRefused(button) {
+  await button.waitFor();
+  await button.click({ force: true });
+}
+
 export async function logIn(page, rig, role) {
   await press(page, "#who");
   await page.fill("#user", rig.who(role));

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { userInfo } from "node:os";
-import { leave, open, picture, visit } from "./browser.mjs";
+import { clickRefused, leave, open, picture, visit } from "./browser.mjs";
 import { WORDS, start } from "./rig.mjs";
 
 const UNITS = ["V", "mV", "A", "mA", "Ω", "mΩ", "mm", "s", "ms", "µs", "min", "C", "V/s", "mΩ/V"];
@@ -77,7 +77,7 @@ test("the operator's page has Chinese words while a lot runs", async () => {
   await page.waitForSelector("#values svg");
   await none(page, "operator", names);
   for (const order of ["reset", "start", "unhold", "clear"]) {
-    await page.click(`#orders [data-order="${order}"]`, { force: true });
+    await clickRefused(page.locator(`#orders [data-order="${order}"]`));
     const answer = await page.textContent("#order_answer");
     assert.match(answer, /^[^、，]{2,14}$/, `${order}: one next step, found ${answer}`);
     await none(page, order, names);
@@ -131,13 +131,14 @@ test("dialogs and refusals have Chinese words", async () => {
   await page.click('nav a[href="#lots"]');
   await page.waitForSelector("#l_book b");
   for (const order of ["hold_lot", "release_lot", "close_lot", "reopen_lot"]) {
-    await page.locator(`#l_book [data-lot-order="${order}"]`).first().click({ force: true });
+    await clickRefused(page.locator(`#l_book [data-lot-order="${order}"]`).first());
     await none(page, order, names);
     if (await page.isVisible("#decide")) await page.click("#decide_cancel");
   }
   await page.click('nav a[href="#io"]');
-  for (const button of await page.$$("#modes button, #jogs button")) {
-    await button.click({ force: true });
+  await page.waitForSelector("#modes button");
+  for (const button of await page.locator("#modes button, #jogs button").all()) {
+    await clickRefused(button);
     await page.waitForFunction(() => document.getElementById("io_answer").textContent !== "");
     await none(page, "io", names);
   }
@@ -251,7 +252,7 @@ for (const fault of ["door", "stuck_lift", "beam_blind", "silence=mech_di_a@32",
       await other.until("page, list and log count alike", async () => new Set(await counts(other)).size === 1)
         .catch(async () => found.push("page, list, log: " + await counts(other)));
       await page.click('nav a[href="#operator"]');
-      await page.click('#orders [data-order="clear"]', { force: true });
+      await clickRefused(page.locator('#orders [data-order="clear"]'));
       await none(page, fault, names);
       await page.click('nav a[href="#lots"]');
       await page.waitForSelector("#l_book b");

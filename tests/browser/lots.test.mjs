@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SIZES, leave, looks, open, picture, shown, visit } from "./browser.mjs";
+import { SIZES, clickRefused, leave, looks, open, picture, shown, visit } from "./browser.mjs";
 import { WORDS, serve } from "./rig.mjs";
 
 let rig, browser;
@@ -38,7 +38,7 @@ test("start without a lot points to the page Lots", async () => {
   await rig.until("stopped", (view) => view.machine.state === "Stopped");
   await page.click('#orders [data-order="reset"]');
   await page.waitForSelector(`#orders [data-order="start"][title="${WORDS["refusal-no_lot"].en}"]`);
-  await page.click('#orders [data-order="start"]', { force: true });
+  await clickRefused(page.locator('#orders [data-order="start"]'));
   await shown(page, "#order_answer", WORDS["refusal-no_lot"].en);
   await looks(page, "operator-no-lot");
   await leave(page);
@@ -55,7 +55,7 @@ test("one lot starts, holds and closes, another starts", async () => {
   await rig.until("held", (view) => view.machine.state === "Held");
   await page.click('nav a[href="#lots"]');
   await lotRow(page, "A").waitFor();
-  await page.click("#l_start", { force: true });
+  await clickRefused(page.locator("#l_start"));
   assert.equal(await page.textContent("#l_answer"), WORDS["next-stop"].en);
   await decide(page, "A", "close_lot", "rest of the reel returned");
   await rig.until("closed", (view) => !view.under_way);
@@ -76,7 +76,7 @@ test("a held lot waits until a maintainer releases it", async () => {
   await lotRow(operator, "A").waitFor();
   await decide(operator, "A", "hold_lot", "wrong label");
   await lotRow(operator, "A").getByText("wrong label (li)").waitFor();
-  await lotRow(operator, "A").locator('[data-lot-order="start"]').click({ force: true });
+  await clickRefused(lotRow(operator, "A").locator('[data-lot-order="start"]'));
   await shown(operator, "#l_answer", WORDS["refusal-release_first"].en);
   await startLot(operator, "A", 1);
   await shown(operator, "#l_answer", "lot A is held: wrong label (li)");

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SIZES, forgive, leave, logIn, looks, open, picture, press, shown, visit } from "./browser.mjs";
+import { SIZES, clickRefused, forgive, leave, logIn, looks, open, picture, press, shown, visit } from "./browser.mjs";
 import { WORDS, start } from "./rig.mjs";
 
 let rig, browser;
@@ -38,7 +38,7 @@ test("parts move in the picture; the last verdict stays", async () => {
 
 test("without login buttons and rig refuse orders", async () => {
   const page = await visit(browser, rig);
-  await page.click('#orders [data-order="stop"]', { force: true });
+  await clickRefused(page.locator('#orders [data-order="stop"]'));
   await shown(page, "#order_answer", WORDS["stop-login"].en);
   const status = await page.evaluate(async () => (await fetch("/api/orders", { method: "POST",
     headers: { "Content-Type": "application/json" }, body: '{"order":"stop"}' })).status);
@@ -78,7 +78,7 @@ test("a role that is too weak is refused", async () => {
 test("a held lot continues; disabled buttons give their reason", async () => {
   const page = await visit(browser, rig, { role: "operator" });
   await rig.until("the lot runs", (view) => view.machine.state === "Execute");
-  await page.click('#orders [data-order="unhold"]', { force: true });
+  await clickRefused(page.locator('#orders [data-order="unhold"]'));
   await shown(page, "#order_answer", WORDS["next-already"].en);
   await page.click('#orders [data-order="hold"]');
   await rig.until("held", (view) => view.machine.state === "Held");

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SIZES, forgive, leave, looks, open, picture, press, shown, visit } from "./browser.mjs";
+import { SIZES, clickRefused, forgive, leave, looks, open, picture, press, shown, visit } from "./browser.mjs";
 import { WORDS, serve } from "./rig.mjs";
 
 let rig, browser;
@@ -30,7 +30,7 @@ test("a preview draws every step and stores nothing", async () => {
   assert.ok(await page.$eval("#t_steps svg", (it) => it.getBoundingClientRect().height) > 40);
   const box = await page.$eval("#t_steps svg .moves", (it) => it.getBBox().width);
   assert.ok(box > 0, "the moving body has a shape");
-  await page.click("#t_start", { force: true });
+  await clickRefused(page.locator("#t_start"));
   await shown(page, "#t_answer", WORDS["stop-login"].en);
   assert.deepEqual(await (await fetch(rig.url + "/api/plans/list")).json(), []);
   await leave(page);
@@ -57,7 +57,7 @@ test("a maintainer ticks off a plan, which a restart keeps", async () => {
   await shown(page, "#t_steps .plan_done", rig.who("maintainer"));
   const other = await visit(browser, rig, { path: "/#tooling" });
   await other.waitForSelector('[data-tick="2"]');
-  await other.click('[data-tick="2"]', { force: true });
+  await clickRefused(other.locator('[data-tick="2"]'));
   await shown(other, "#t_answer", WORDS["stop-login"].en);
   await leave(other);
   await page.click('[data-untick="1"]');
@@ -94,7 +94,7 @@ test("what is chosen comes off, step by step to the end", async () => {
 test("an operator sees a plan and cannot start one", async () => {
   const page = await visit(browser, rig, { role: "operator", path: "/#tooling" });
   await page.waitForSelector("#t_from option", { state: "attached" });
-  await page.click("#t_start", { force: true });
+  await clickRefused(page.locator("#t_start"));
   await shown(page, "#t_answer", WORDS["role-maintainer"].en);
   page.faults = page.faults.filter((it) => !it.includes("403"));
   await leave(page);
