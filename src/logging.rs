@@ -17,7 +17,7 @@ const JSON: &str = "json";
 const LEVELS: [&str; 6] = ["off", "error", "warn", "info", "debug", "trace"];
 
 /// Modules that `--log` knows: the crates of this program, and libraries that serve the page.
-const MODULES: [&str; 26] = [
+const MODULES: [&str; 27] = [
     "relayrig",
     "app",
     "bus",
@@ -37,6 +37,7 @@ const MODULES: [&str; 26] = [
     "studies",
     "texts",
     "units",
+    "virtual_time",
     "axum",
     "hyper",
     "hyper_util",

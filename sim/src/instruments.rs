@@ -23,8 +23,8 @@ impl Desk for SharedRig {
 }
 
 impl SharedRig {
-    /// Returns a connector for the link of each instrument, or of an adapter, in virtual time: on the current runtime,
-    /// whose clock is paused. Rig time continues from its present value. Empty for a rig without instruments.
+    /// Returns a connector for the link of each instrument, or of an adapter, in virtual time, on the current
+    /// runtime. Rig time continues from its present value. Empty for a rig without instruments.
     pub fn instrument_plugs(&self) -> Vec<(String, Plug)> {
         serve::plugs(Arc::new(self.clone()), self.now_us())
     }

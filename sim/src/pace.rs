@@ -1,32 +1,30 @@
-//! Maps rig time to tokio's clock: one rig microsecond is one tokio millisecond.
-//!
-//! The timers of tokio resolve 1 ms, so the mapping gives them a resolution of 1 us of rig time. With the clock of
-//! tokio paused, the thousandfold waits take no wall time.
+//! Maps rig time to virtual time.
 
-use std::time::Duration;
-use tokio::time::Instant;
-
-/// Rig clock of a runtime with a paused clock.
+/// Rig clock in virtual time. Copies work only on the thread that started it, in a runtime of
+/// [`virtual_time::builder`].
 #[derive(Debug, Clone, Copy)]
 pub struct Pace {
-    origin: Instant,
+    /// Virtual time at which the clock started, and rig time then, microseconds.
+    started_us: (u64, u64),
 }
 
 impl Pace {
-    /// Starts the clock; rig time 0 is now.
-    pub fn start() -> Self {
+    /// Starts the clock; rig time is `rig_us` now.
+    pub fn start(rig_us: u64) -> Self {
         Self {
-            origin: Instant::now(),
+            started_us: (virtual_time::now_us(), rig_us),
         }
     }
 
     /// Returns rig time, microseconds.
     pub fn now_us(&self) -> u64 {
-        self.origin.elapsed().as_millis() as u64
+        let (virtual_us, rig_us) = self.started_us;
+        rig_us + (virtual_time::now_us() - virtual_us)
     }
 
-    /// Returns the instant of the tokio clock at rig time `t_us`.
-    pub fn at(&self, t_us: u64) -> Instant {
-        self.origin + Duration::from_millis(t_us)
+    /// Waits until rig time `t_us`; returns at once if that has passed.
+    pub async fn sleep_until(self, t_us: u64) {
+        let (virtual_us, rig_us) = self.started_us;
+        virtual_time::sleep_until(virtual_us + t_us.saturating_sub(rig_us)).await;
     }
 }

@@ -1,4 +1,4 @@
-//! Lines as in-process byte streams in virtual time (tokio's paused clock, current-thread runtime).
+//! Lines as in-process byte streams in virtual time.
 //!
 //! The task of a line reads requests, waits until the last character has arrived, lets the rig answer, waits
 //! until the last character of the reply has arrived, and writes the reply in one piece. A pending reply never
@@ -9,7 +9,6 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
-use tokio::time::sleep_until;
 
 use crate::SharedRig;
 use crate::config::READER;
@@ -43,7 +42,7 @@ impl Plug {
     }
 }
 
-/// Opens every line and spawns its task on the current runtime. Rig time continues from its present value. A
+/// Opens every line and spawns its task on the current runtime, one of [`virtual_time::builder`]. Rig time continues from its present value. A
 /// stream that has ended cannot be opened again.
 pub fn in_process(rig: &SharedRig) -> Vec<(String, DuplexStream)> {
     let opened = |(name, plug): (String, Plug)| plug.open().map(|stream| (name, stream));
@@ -52,16 +51,14 @@ pub fn in_process(rig: &SharedRig) -> Vec<(String, DuplexStream)> {
 
 /// Opens every line as [`in_process`] does, with streams that can be opened again.
 pub fn plugs(rig: &SharedRig) -> Vec<(String, Plug)> {
-    let pace = Pace::start();
+    let pace = Pace::start(rig.now_us());
     let lines = rig.lines();
-    let from_us = rig.now_us();
     let open = |(number, (name, baud)): (usize, (String, u32))| {
         let plug = Plug::default();
         let line = Line {
             rig: rig.clone(),
             number,
             pace,
-            from_us,
             baud,
             is_reader: name == READER,
             plug: plug.clone(),
@@ -80,7 +77,6 @@ struct Line {
     rig: SharedRig,
     number: usize,
     pace: Pace,
-    from_us: u64,
     baud: u32,
     /// True for the line of the code reader, which sends by itself.
     is_reader: bool,
@@ -109,8 +105,8 @@ impl Line {
             if !self.plug.is_held() {
                 return;
             }
-            if let Some(restored_us) = self.rig.port_back_us(self.number, self.now_us()) {
-                sleep_until(self.at(restored_us)).await;
+            if let Some(restored_us) = self.rig.port_back_us(self.number, self.pace.now_us()) {
+                self.pace.sleep_until(restored_us).await;
             }
             self.receiver = Receiver::new(self.baud);
             self.arrivals.clear();
@@ -122,12 +118,12 @@ impl Line {
     /// Serves until the host closes its end or the port is lost.
     async fn converse(&mut self, device: &mut DuplexStream) -> std::io::Result<()> {
         let mut bytes = [0u8; 256];
-        let mut now_us = self.now_us();
+        let mut now_us = self.pace.now_us();
         while self.rig.port_back_us(self.number, now_us).is_none() {
-            let due = self.next_us(now_us).map(|next_us| self.at(next_us));
+            let (pace, next_us) = (self.pace, self.next_us(now_us));
             let due = async {
-                match due {
-                    Some(due) => sleep_until(due).await,
+                match next_us {
+                    Some(next_us) => pace.sleep_until(next_us).await,
                     None => std::future::pending().await,
                 }
             };
@@ -136,26 +132,18 @@ impl Line {
                 count = device.read(&mut bytes) => match count? {
                     0 => return Ok(()),
                     count => {
-                        now_us = self.now_us();
+                        now_us = self.pace.now_us();
                         let arrivals = self.receiver.take(&bytes[..count], now_us);
                         self.arrivals.extend(arrivals);
                     }
                 },
                 () = due => {
-                    now_us = self.now_us();
+                    now_us = self.pace.now_us();
                     self.act(device, now_us).await?;
                 }
             }
         }
         Ok(())
-    }
-
-    fn at(&self, t_us: u64) -> tokio::time::Instant {
-        self.pace.at(t_us.saturating_sub(self.from_us))
-    }
-
-    fn now_us(&self) -> u64 {
-        self.from_us + self.pace.now_us()
     }
 
     /// Returns the instant at which the line acts next; `None` while it only waits for bytes.

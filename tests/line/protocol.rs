@@ -210,12 +210,7 @@ fn exchanged(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer
         }
         results
     };
-    tokio::runtime::Builder::new_current_thread()
-        .enable_time()
-        .start_paused(true)
-        .build()
-        .unwrap()
-        .block_on(exchange)
+    virtual_time::block_on(exchange).unwrap()
 }
 
 #[test]

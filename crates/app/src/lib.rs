@@ -153,7 +153,7 @@ pub fn run_answered(
     })
 }
 
-/// Runs `work` on a runtime of one thread; in virtual time the runtime's clock is the clock of the rig.
+/// Runs `work` on a runtime of one thread; in virtual time the clock of the thread is the clock of the rig.
 ///
 /// # Errors
 /// Fails as `work` does, or when the runtime cannot start.
@@ -171,21 +171,19 @@ pub fn block_on<T>(
     done.context("the run has no result")?
 }
 
-/// Creates a runtime of one thread for runs on `source`. In virtual time the runtime's clock is paused and its I/O
-/// driver is off: a rig in this process has no file or socket, and the driver would call the kernel at each step of the
-/// clock. One blocking thread does all work on the history: each thread that SQLite works on keeps memory of its own.
+/// Creates a runtime of one thread for runs on `source`. In virtual time it has neither I/O nor timers of the wall clock:
+/// a rig in this process has no file or socket, and I/O would call the kernel at each jump of the clock. One blocking thread does all work on the history: each thread that SQLite works on keeps memory of its own.
 ///
 /// # Errors
 /// Fails when the operating system refuses the runtime.
 pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
-    let mut builder = tokio::runtime::Builder::new_current_thread();
-    builder.max_blocking_threads(1);
-    #[cfg(feature = "sim")]
-    if source.is_virtual() {
-        let built = builder.enable_time().start_paused(true).build();
-        return built.context("starting the runtime");
+    let mut builder = match source.is_virtual() {
+        true => virtual_time::builder(),
+        false => tokio::runtime::Builder::new_current_thread(),
+    };
+    if !source.is_virtual() {
+        builder.enable_all();
     }
-    let _ = source;
-    builder.enable_all();
-    builder.build().context("starting the runtime")
+    let built = builder.max_blocking_threads(1).build();
+    built.context("starting the runtime")
 }

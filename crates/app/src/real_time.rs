@@ -2,7 +2,7 @@
 //! grants it.
 //!
 //! At real pace neither history nor page nor log run on this thread. In virtual time the lines and the cycle run on the
-//! caller's thread, because the paused clock of that thread's runtime is the clock of the rig.
+//! caller's thread, because the virtual clock of that thread is the clock of the rig.
 
 use anyhow::Context;
 use bus::{Pace, Passage};
@@ -293,12 +293,15 @@ mod tests {
     }
 
     #[cfg(feature = "sim")]
-    #[tokio::test(start_paused = true)]
-    async fn virtual_time_stays_on_the_callers_thread() {
-        let thread = RigThread::start(Pace::virtual_time()).unwrap();
-        let here = std::thread::current().id();
-        let there = async { std::thread::current().id() };
-        assert_eq!(thread.keeper().handle.spawn(there).await.unwrap(), here);
-        assert_eq!(thread.rights, HostView::default());
+    #[test]
+    fn virtual_time_stays_on_the_callers_thread() {
+        virtual_time::block_on(async {
+            let thread = RigThread::start(Pace::virtual_time()).unwrap();
+            let here = std::thread::current().id();
+            let there = async { std::thread::current().id() };
+            assert_eq!(thread.keeper().handle.spawn(there).await.unwrap(), here);
+            assert_eq!(thread.rights, HostView::default());
+        })
+        .unwrap();
     }
 }

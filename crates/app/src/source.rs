@@ -115,13 +115,18 @@ impl RigSource {
         self.seed().is_some()
     }
 
-    /// Returns true when rig time is virtual: the runtime's clock is paused.
+    /// Returns true when rig time is virtual.
     pub fn is_virtual(&self) -> bool {
         match self {
             Self::Serial(_) => false,
             #[cfg(feature = "sim")]
             Self::Simulated(simulated) => simulated.pace != SimulatedPace::Real,
         }
+    }
+
+    /// Returns true when rig time runs as fast as the computer allows.
+    pub fn is_unlimited(&self) -> bool {
+        self.is_virtual() && self.speed().is_none()
     }
 
     /// Returns the largest ratio of rig time to wall time in virtual time; `None`: unlimited, or not virtual.

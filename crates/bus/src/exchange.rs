@@ -8,7 +8,6 @@ use std::io;
 use std::pin::{Pin, pin};
 use std::task::Poll;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, ReadBuf};
-use tokio::time::Sleep;
 use units::{RigTime, Span};
 
 /// Buffer for a frame, which may arrive in several pieces.
@@ -113,7 +112,7 @@ impl Exchange<'_> {
     ) -> io::Result<FrameEnd> {
         assert!(!request.is_empty(), "an empty request");
         frame.clear();
-        let mut timer = pin!(self.pace.sleep(deadline));
+        let mut timer = pin!(self.pace.sleep_until(deadline));
         if !self.write(request, timer.as_mut()).await? {
             return Ok(FrameEnd::TimedOut);
         }
@@ -151,7 +150,7 @@ impl Exchange<'_> {
             strays: false,
             last_heard: self.pace.now(),
         };
-        let mut timer = pin!(self.pace.sleep(deadline));
+        let mut timer = pin!(self.pace.sleep_until(deadline));
         if !self.write(&request, timer.as_mut()).await? {
             return Ok(named);
         }
@@ -187,12 +186,16 @@ impl Exchange<'_> {
 
     /// Writes a broadcast, which has no reply.
     pub(super) async fn broadcast(&mut self, request: &[u8], deadline: RigTime) -> io::Result<()> {
-        let timer = pin!(self.pace.sleep(deadline));
+        let timer = pin!(self.pace.sleep_until(deadline));
         self.write(request, timer).await.map(|_| ())
     }
 
     /// Writes `bytes`; returns false when the port has not accepted them before `timer` fires.
-    async fn write(&mut self, bytes: &[u8], timer: Pin<&mut Sleep>) -> io::Result<bool> {
+    async fn write(
+        &mut self,
+        bytes: &[u8],
+        timer: Pin<&mut impl Future<Output = ()>>,
+    ) -> io::Result<bool> {
         self.note(Direction::Sent, bytes);
         tokio::select! {
             biased;
@@ -209,7 +212,7 @@ impl Exchange<'_> {
     async fn piece(
         &mut self,
         piece: &mut [u8],
-        timer: Pin<&mut Sleep>,
+        timer: Pin<&mut impl Future<Output = ()>>,
     ) -> io::Result<Option<usize>> {
         let in_time = tokio::select! {
             biased;
@@ -280,7 +283,7 @@ impl Exchange<'_> {
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut until = last_heard + silence;
         while until <= limit {
-            let timer = pin!(self.pace.sleep(until));
+            let timer = pin!(self.pace.sleep_until(until));
             let Some(count) = self.piece(&mut piece, timer).await? else {
                 return Ok(SilenceEnd::Silent);
             };

@@ -1,19 +1,22 @@
 //! Rig time, and the timers on which it runs.
 //!
-//! At real pace, rig time follows the wall clock. At virtual pace it follows tokio's paused clock, which jumps to the
-//! next deadline as soon as every task waits. Tokio's timers have steps of one millisecond, too coarse for characters
-//! of 87 us; so at virtual pace *one microsecond of rig time is one millisecond of tokio's clock*. In this crate only
-//! this file knows the factor.
+//! At real pace, rig time follows the wall clock, with the timers of tokio in steps of a millisecond. At virtual pace it
+//! follows the clock of the crate `virtual_time`, in steps of a microsecond: a character takes 87 us.
 
 use std::time::Duration;
-use tokio::time::{Instant, Sleep};
+use tokio::time::Instant;
 use units::{RigTime, Span};
 
 /// Clock of the rig. Copies show the same time.
 #[derive(Debug, Clone, Copy)]
-pub struct Pace {
-    began: Instant,
-    is_virtual: bool,
+pub struct Pace(Clock);
+
+/// Clock that a pace follows, with its reading at rig time 0.
+#[derive(Debug, Clone, Copy)]
+enum Clock {
+    Wall(Instant),
+    /// Microseconds of virtual time.
+    Virtual(u64),
 }
 
 /// Rig time between two pauses with which [`Pace::limit_speed`] slows virtual time: half the time of a screen frame.
@@ -22,49 +25,36 @@ const HOLD: Span = Span(10_000);
 impl Pace {
     /// Returns a clock at real pace; its time 0 is now.
     pub fn real() -> Self {
-        Self {
-            began: Instant::now(),
-            is_virtual: false,
-        }
+        Self(Clock::Wall(Instant::now()))
     }
 
-    /// Returns a clock at virtual pace; its time 0 is now. Needs a current-thread runtime whose clock is paused.
+    /// Returns a clock at virtual pace; its time 0 is now. Copies work only on this thread, in a runtime of
+    /// [`virtual_time::builder`].
     pub fn virtual_time() -> Self {
-        Self {
-            began: Instant::now(),
-            is_virtual: true,
-        }
+        Self(Clock::Virtual(virtual_time::now_us()))
     }
 
     /// Returns true at virtual pace.
     pub fn is_virtual(&self) -> bool {
-        self.is_virtual
+        matches!(self.0, Clock::Virtual(_))
     }
 
     /// Returns the rig time: microseconds since the clock was created.
     pub fn now(&self) -> RigTime {
-        let elapsed = self.began.elapsed();
-        RigTime(if self.is_virtual {
-            elapsed.as_millis()
-        } else {
-            elapsed.as_micros()
-        } as u64)
+        RigTime(match self.0 {
+            Clock::Wall(began) => began.elapsed().as_micros() as u64,
+            Clock::Virtual(began_us) => virtual_time::now_us() - began_us,
+        })
     }
 
-    /// Returns a timer that fires at `until`; at real pace up to two milliseconds later, never earlier.
-    pub fn sleep(&self, until: RigTime) -> Sleep {
-        let since_began = if self.is_virtual {
-            Duration::from_millis(until.0)
-        } else {
-            Duration::from_micros(until.0)
-        };
-        tokio::time::sleep_until(self.began + since_began)
-    }
-
-    /// Waits until `until`; returns at once if that time has passed.
-    pub async fn sleep_until(&self, until: RigTime) {
-        if self.now() < until {
-            self.sleep(until).await;
+    /// Waits until `until`, at real pace up to two milliseconds longer; returns at once if that time has passed.
+    pub async fn sleep_until(self, until: RigTime) {
+        match self.0 {
+            Clock::Wall(_) if self.now() >= until => {}
+            Clock::Wall(began) => {
+                tokio::time::sleep_until(began + Duration::from_micros(until.0)).await;
+            }
+            Clock::Virtual(began_us) => virtual_time::sleep_until(began_us + until.0).await,
         }
     }
 
@@ -78,7 +68,7 @@ impl Pace {
         let wall = Duration::from_micros(HOLD.0).div_f64(speed);
         loop {
             let began = std::time::Instant::now();
-            self.sleep(self.now() + HOLD).await;
+            self.sleep_until(self.now() + HOLD).await;
             std::thread::sleep(wall.saturating_sub(began.elapsed()));
         }
     }

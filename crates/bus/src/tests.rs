@@ -38,12 +38,7 @@ fn settings() -> LineSettings {
 
 /// Runs `test` in virtual time on a current-thread runtime.
 fn in_virtual_time<F: Future>(test: F) -> F::Output {
-    tokio::runtime::Builder::new_current_thread()
-        .enable_time()
-        .start_paused(true)
-        .build()
-        .unwrap()
-        .block_on(test)
+    virtual_time::block_on(test).unwrap()
 }
 
 /// Answers the n-th request with the n-th entry of `script`; leaves later requests unanswered. Answers a request for

@@ -65,11 +65,8 @@ struct Bench {
 
 /// Runs `test` in virtual time with the instruments `meter` and `source`.
 fn in_virtual_time(meters: [Meter; 2], test: impl AsyncFnOnce(Bench)) {
-    let runtime = tokio::runtime::Builder::new_current_thread();
-    let runtime = { runtime }.enable_all().start_paused(true).build();
-    runtime.unwrap().block_on(async {
-        test(Bench::new(meters)).await;
-    });
+    let run = async { test(Bench::new(meters)).await };
+    virtual_time::block_on(run).unwrap();
 }
 
 /// Answers every request: modules accept every command.

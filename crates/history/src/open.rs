@@ -3,7 +3,8 @@
 //! 1. A file with tables but another `application_id` belongs to another program; opening it fails before any write.
 //! 2. Opening fails on a schema newer than this program, and migrates an older one: all missing steps in one
 //!    transaction.
-//! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
+//! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss
+//!    ([`Store::trust_the_power`](super::Store::trust_the_power) makes an exception).
 //! 4. SQLite may not use bound values for its query plans (`QPSG`), because planning a statement again for each part
 //!    would take longer than running it.
 //! 5. Reads use the page cache, not a memory map: an I/O error in a map raises a signal, which would end the process

@@ -90,6 +90,13 @@ impl Store {
         Ok(number)
     }
 
+    /// From now on acknowledges a batch before the disk has it: batches survive the end of the program, but a power loss
+    /// may take the last ones. The file stays whole.
+    pub fn trust_the_power(&mut self) -> Result<()> {
+        let relaxed = self.connection.pragma_update(None, "synchronous", "NORMAL");
+        relaxed.doing("preparing the history")
+    }
+
     /// Closes the run of the lot, packs its values and drops the scans of parts that never arrived; later rows for the
     /// run are refused. After an error the run is still open.
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {

@@ -8,7 +8,7 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
 use tokio::net::{TcpListener, UnixStream};
 use tokio::task::JoinSet;
-use tokio::time::{Instant, sleep, sleep_until};
+use tokio::time::{Instant, sleep};
 
 use super::bench::{Desk, SharedBench};
 use super::file::Link;
@@ -29,22 +29,23 @@ const ROOM: usize = 1 << 16;
 enum Clock {
     /// Instant of rig time 0.
     Real(Instant),
-    /// Pace, with the rig time at its start, microseconds.
-    Virtual(Pace, u64),
+    Virtual(Pace),
 }
 
 impl Clock {
     fn now_us(self) -> u64 {
         match self {
             Self::Real(origin) => origin.elapsed().as_micros() as u64,
-            Self::Virtual(pace, from_us) => from_us + pace.now_us(),
+            Self::Virtual(pace) => pace.now_us(),
         }
     }
 
-    fn at(self, t_us: u64) -> Instant {
+    async fn sleep_until(self, t_us: u64) {
         match self {
-            Self::Real(origin) => origin + Duration::from_micros(t_us),
-            Self::Virtual(pace, from_us) => pace.at(t_us.saturating_sub(from_us)),
+            Self::Real(origin) => {
+                tokio::time::sleep_until(origin + Duration::from_micros(t_us)).await;
+            }
+            Self::Virtual(pace) => pace.sleep_until(t_us).await,
         }
     }
 }
@@ -173,15 +174,14 @@ impl Plug {
     }
 }
 
-/// Returns each port's name and connector. The ports run on the current runtime, whose clock is paused; one microsecond
-/// of rig time is one millisecond of that clock.
+/// Returns each port's name and connector. The ports run on the current runtime, one of [`virtual_time::builder`].
 pub fn virtual_time(bench: &SharedBench) -> Vec<(String, Plug)> {
     plugs(Arc::new(bench.clone()), 0)
 }
 
-/// Returns a connector per port as [`virtual_time`] does; rig time is `from_us` now.
+/// Returns a connector per port as [`virtual_time()`] does; rig time is `from_us` now.
 pub(crate) fn plugs(bench: Arc<dyn Desk>, from_us: u64) -> Vec<(String, Plug)> {
-    let clock = Clock::Virtual(Pace::start(), from_us);
+    let clock = Clock::Virtual(Pace::start(from_us));
     let plug = |(number, (name, _)): (usize, (String, Link))| {
         let bench = bench.clone();
         let plug = Plug {
@@ -221,7 +221,7 @@ async fn converse<S: AsyncRead + AsyncWrite + Unpin>(
                 0 => return Ok(()),
                 count => bench.receive(number, &bytes[..count], clock.now_us()),
             },
-            () = sleep_until(clock.at(look_us)), if next_us.is_some() => {}
+            () = clock.sleep_until(look_us), if next_us.is_some() => {}
         }
     }
 }

@@ -1,11 +1,10 @@
 //! Tests of the whole rig of `config/`: module settings, scan rate, safe outputs, reproducibility.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use rigsim::{Files, Options, SharedRig, SimError, wire};
 use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
-use tokio::time::timeout;
+use virtual_time::within;
 
 const MEASURE: usize = 0;
 const MOTION: usize = 1;
@@ -166,9 +165,9 @@ async fn poll(mut port: DuplexStream, requests: &'static [&'static str], rounds:
         let mut request = with_checksum(requests[round % requests.len()]);
         request.push(b'\r');
         port.write_all(&request).await.expect("a stream");
-        // 40 ms of rig time: a broadcast or a lost reply.
-        let reply = timeout(Duration::from_secs(40), port.read(&mut bytes)).await;
-        if let Ok(count) = reply {
+        // Longer than any reply takes: a broadcast or a lost reply.
+        let reply = within(40_000, port.read(&mut bytes)).await;
+        if let Some(count) = reply {
             seen.extend_from_slice(&bytes[..count.expect("a stream")]);
         }
     }
@@ -176,12 +175,7 @@ async fn poll(mut port: DuplexStream, requests: &'static [&'static str], rounds:
 }
 
 fn session(seed: u64, faults: &[&str]) -> (Vec<u8>, Vec<u8>) {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_time()
-        .start_paused(true)
-        .build()
-        .expect("a runtime");
-    runtime.block_on(async {
+    let replies = virtual_time::block_on(async {
         let mut ports = wire::in_process(&rig(seed, faults)).into_iter();
         let mut port = || ports.next().expect("a line").1;
         let measure = poll(
@@ -195,7 +189,8 @@ fn session(seed: u64, faults: &[&str]) -> (Vec<u8>, Vec<u8>) {
             600,
         );
         tokio::join!(measure, motion)
-    })
+    });
+    replies.expect("a runtime")
 }
 
 #[test]

@@ -98,20 +98,12 @@ fn storms(way: Way, seed: u64, faults: &[String], queries: u64) -> Vec<Weather> 
         if sent >= queries {
             break;
         }
-        let weather = in_virtual_time(storm(way, seed, faults, STORM_S));
+        let weather = virtual_time::block_on(storm(way, seed, faults, STORM_S));
+        let weather = weather.expect("a runtime");
         sent += weather.queries;
         storms.push(weather);
     }
     storms
-}
-
-fn in_virtual_time<F: Future>(what: F) -> F::Output {
-    tokio::runtime::Builder::new_current_thread()
-        .enable_time()
-        .start_paused(true)
-        .build()
-        .expect("a runtime")
-        .block_on(what)
 }
 
 fn print(name: &str, storms: &[Weather]) {

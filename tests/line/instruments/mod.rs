@@ -13,13 +13,16 @@ const TOGETHER_S: f64 = 100.0;
 /// Rig time of a storm of one fault.
 const ALONE_S: f64 = 10.0;
 
-#[tokio::test(start_paused = true)]
-async fn no_reply_reaches_another_query_under_all_faults() {
-    for (seed, way) in (1..).zip(WAYS) {
-        let weather = storm(way, seed, &every_fault(0.01, TOGETHER_S), TOGETHER_S).await;
-        assert!(weather.is_honest(), "{way:?}: {weather:#?}");
-        assert!(!weather.failures.is_empty(), "{way:?}: no fault struck");
-    }
+#[test]
+fn no_reply_reaches_another_query_under_all_faults() {
+    virtual_time::block_on(async {
+        for (seed, way) in (1..).zip(WAYS) {
+            let weather = storm(way, seed, &every_fault(0.01, TOGETHER_S), TOGETHER_S).await;
+            assert!(weather.is_honest(), "{way:?}: {weather:#?}");
+            assert!(!weather.failures.is_empty(), "{way:?}: no fault struck");
+        }
+    })
+    .unwrap();
 }
 
 /// Each fault, the way on which it strikes, and the names of the first failures that it causes; none when a link must
@@ -55,39 +58,48 @@ const EACH: [(&str, Way, &[&str]); 24] = [
     ("address_changed=1", Way::Adapter, &["adapter_address"]),
 ];
 
-#[tokio::test(start_paused = true)]
-async fn each_fault_has_its_name_and_leaves_nothing() {
-    let name = |fault: &str| fault.split_once('=').map_or("", |it| it.0).to_owned();
-    let mut tried: Vec<String> = EACH.iter().map(|it| name(it.0)).collect();
-    tried.dedup();
-    let known = rigsim::fault::instrument::list().into_iter();
-    assert_eq!(tried, known.map(|it| it.name).collect::<Vec<_>>());
-    for (fault, way, names) in EACH {
-        let mut faults = vec![format!("{fault}@0.5..2")];
-        if ["half_kept", "port_busy", "wrong_identity"].contains(&name(fault).as_str()) {
-            faults.push("closed_before=1@0.5..0.6".to_owned());
+#[test]
+fn each_fault_has_its_name_and_leaves_nothing() {
+    virtual_time::block_on(async {
+        let name = |fault: &str| fault.split_once('=').map_or("", |it| it.0).to_owned();
+        let mut tried: Vec<String> = EACH.iter().map(|it| name(it.0)).collect();
+        tried.dedup();
+        let known = rigsim::fault::instrument::list().into_iter();
+        assert_eq!(tried, known.map(|it| it.name).collect::<Vec<_>>());
+        for (fault, way, names) in EACH {
+            let mut faults = vec![format!("{fault}@0.5..2")];
+            if ["half_kept", "port_busy", "wrong_identity"].contains(&name(fault).as_str()) {
+                faults.push("closed_before=1@0.5..0.6".to_owned());
+            }
+            let mut weather = storm(way, 1, &faults, 2.0).await;
+            assert!(weather.is_honest(), "{faults:?}: {weather:#?}");
+            weather.failures.dedup();
+            let first = weather.failures.iter().take(names.len().max(1));
+            assert!(first.eq(names), "{faults:?}: {weather:#?}");
         }
-        let mut weather = storm(way, 1, &faults, 2.0).await;
-        assert!(weather.is_honest(), "{faults:?}: {weather:#?}");
-        weather.failures.dedup();
-        let first = weather.failures.iter().take(names.len().max(1));
-        assert!(first.eq(names), "{faults:?}: {weather:#?}");
-    }
+    })
+    .unwrap();
 }
 
-#[tokio::test(start_paused = true)]
-async fn no_reply_reaches_another_query_under_one_fault() {
-    for (seed, (way, faults)) in (1..).zip(each_fault(0.03, ALONE_S)) {
-        let weather = storm(way, seed, &faults, ALONE_S).await;
-        assert!(weather.is_honest(), "{faults:?}, {way:?}: {weather:#?}");
-    }
+#[test]
+fn no_reply_reaches_another_query_under_one_fault() {
+    virtual_time::block_on(async {
+        for (seed, (way, faults)) in (1..).zip(each_fault(0.03, ALONE_S)) {
+            let weather = storm(way, seed, &faults, ALONE_S).await;
+            assert!(weather.is_honest(), "{faults:?}, {way:?}: {weather:#?}");
+        }
+    })
+    .unwrap();
 }
 
-#[tokio::test(start_paused = true)]
-async fn a_calm_link_delivers_everything() {
-    for way in WAYS {
-        let weather = storm(way, 5, &[], 0.0).await;
-        assert_eq!(weather.delivered, weather.queries, "{way:?}: {weather:#?}");
-        assert!(weather.is_honest(), "{way:?}: {weather:#?}");
-    }
+#[test]
+fn a_calm_link_delivers_everything() {
+    virtual_time::block_on(async {
+        for way in WAYS {
+            let weather = storm(way, 5, &[], 0.0).await;
+            assert_eq!(weather.delivered, weather.queries, "{way:?}: {weather:#?}");
+            assert!(weather.is_honest(), "{way:?}: {weather:#?}");
+        }
+    })
+    .unwrap();
 }

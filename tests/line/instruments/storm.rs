@@ -147,7 +147,7 @@ pub fn each_fault(probability: f64, until_s: f64) -> Vec<(Way, Vec<String>)> {
 }
 
 /// Sends programs under `faults`, which end at `until_s` of rig time, and [`CALM`] programs after that. Needs a
-/// current-thread runtime with a paused clock.
+/// runtime of virtual time.
 pub async fn storm(way: Way, seed: u64, faults: &[String], until_s: f64) -> Weather {
     let (wall, pace) = (Instant::now(), Pace::virtual_time());
     let (profile, settings) = settings(way);

@@ -3,9 +3,7 @@
 
 mod rage;
 
-use rage::{EVERY_FAULT, in_virtual_time, rage, storm};
-use std::time::Duration;
-use tokio::time::{Instant, advance, interval_at};
+use rage::{EVERY_FAULT, rage, storm};
 
 /// Transactions of a storm: every fault occurs about two hundred times.
 const TRANSACTIONS: u64 = 20_000;
@@ -44,24 +42,23 @@ fn each_fault_alone_is_reported_as_itself() {
     }
 }
 
-/// Run time of a late host between two pauses: 7.301 ms of rig time.
-const RUNS: Duration = Duration::from_millis(7_301);
-/// Pause of a late host: 95.003 ms of rig time, longer than every time-out.
-const HOST_PAUSE: Duration = Duration::from_millis(95_003);
+/// Run time of a late host between two pauses, microseconds.
+const RUNS_US: u64 = 7_301;
+/// Pause of a late host, microseconds: longer than every time-out.
+const HOST_PAUSE_US: u64 = 95_003;
 
 #[test]
 fn a_late_host_takes_no_module_for_silent() {
-    let weather = in_virtual_time(async {
+    let weather = virtual_time::block_on(async {
         tokio::spawn(async {
-            let mut runs = interval_at(Instant::now() + RUNS, RUNS);
             loop {
-                runs.tick().await;
-                advance(HOST_PAUSE).await;
-                runs.reset();
+                virtual_time::sleep_until(virtual_time::now_us() + RUNS_US).await;
+                virtual_time::pause_host(HOST_PAUSE_US);
             }
         });
         storm(1, 2_000, &[]).await
     });
+    let weather = weather.unwrap();
     assert!(weather.is_honest(), "{weather:#?}");
     assert_eq!(weather.believed, 2_000, "{weather:#?}");
     // The host paused for most of the time.

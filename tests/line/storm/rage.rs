@@ -7,7 +7,7 @@
 //!   between request and answer (else *stale*; analog inputs: within the age of a free-running conversion);
 //! - an accepted write must have been carried out (else *hollow*);
 //! - a failure must name line, address and command (else *nameless*);
-//! - every request must be answered within [`ANSWER_TIMEOUT`] of rig time (else it *hangs*).
+//! - every request must be answered within [`ANSWER_TIMEOUT_US`] of rig time (else it *hangs*).
 
 use bus::{Answer, Failure, LineError, LineSettings, Pace, Request};
 use dcon::{
@@ -19,7 +19,7 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rigsim::fingerprint::{self, FingerprintLine};
 use rigsim::wire;
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tokio::sync::mpsc;
 
 /// Every fault of the line, each at 1 %: lost, late within and beyond the time-out, damaged, doubled, reset, unplugged.
@@ -43,9 +43,8 @@ pub const EVERY_FAULT: [&str; 13] = [
 /// next one. The two late faults together make 220 ms.
 const GRACE_MS: u64 = 200;
 
-/// Longest time until an answer, of rig time: two tries, each with time-out, noisy silence and a lost port. One
-/// microsecond of the rig is a millisecond of the runtime.
-const ANSWER_TIMEOUT: Duration = Duration::from_millis(5_000_000);
+/// Longest time until an answer, microseconds of rig time: two tries, each with time-out, noisy silence and a lost port.
+const ANSWER_TIMEOUT_US: u64 = 5_000_000;
 
 /// Age of a reading of a free-running converter, microseconds: eight windows of 1/60 s, three of 1/15 s, two steps.
 const CONVERSION_US: u64 = 250_000;
@@ -96,20 +95,10 @@ impl Weather {
 
 /// Runs a storm of `transactions` transactions.
 pub fn rage(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
-    in_virtual_time(storm(seed, transactions, faults))
+    virtual_time::block_on(storm(seed, transactions, faults)).expect("a runtime")
 }
 
-/// Returns a runtime with tokio's paused clock, which jumps to the next deadline when all tasks wait.
-pub fn in_virtual_time<F: Future>(what: F) -> F::Output {
-    tokio::runtime::Builder::new_current_thread()
-        .enable_time()
-        .start_paused(true)
-        .build()
-        .expect("a runtime")
-        .block_on(what)
-}
-
-/// As [`rage`], on an existing runtime.
+/// As [`rage`], on an existing runtime of virtual time.
 pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
     let line = FingerprintLine::build(seed, 115_200, faults).expect("known faults");
     let pace = Pace::virtual_time();
@@ -140,7 +129,7 @@ pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
             tries: 2,
         };
         ask.send(request).await.expect("the line listens");
-        let Ok(answer) = tokio::time::timeout(ANSWER_TIMEOUT, answers.recv()).await else {
+        let Some(answer) = virtual_time::within(ANSWER_TIMEOUT_US, answers.recv()).await else {
             weather.hangs += 1;
             break;
         };

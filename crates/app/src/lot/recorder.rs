@@ -4,7 +4,8 @@
 //! [`FOUND_LOT`](super::FOUND_LOT) begins. One transaction writes all pending rows; [`Recorder::commit`] then returns
 //! the ordinal (number within the run) of the last judged part, whose publication allows the sorter to open its
 //! gripper. After a failed transaction its rows stay pending, in order. While the cycle runs in real time, the database
-//! works on a blocking thread, one short task per transaction; in virtual time, which stops meanwhile, it works at once.
+//! works on a blocking thread, one short task per transaction; in virtual time, which stops meanwhile, it works at once. At
+//! unlimited speed it does not wait for the disk: a power loss may take the last simulated parts.
 
 use super::event::LotEvent;
 use super::journal::Journal;
@@ -47,6 +48,9 @@ impl Recorder {
     /// over.
     pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, PriorState)> {
         let mut store = Store::open(db)?;
+        if context.source.is_unlimited() {
+            store.trust_the_power()?;
+        }
         store.claim(context.is_simulated())?;
         store.cut_off(context.is_simulated(), context.epoch_us)?;
         let prior_state = PriorState::read(&store, context)?;

@@ -155,13 +155,15 @@ fn a_full_disk_names_its_error_and_keeps_rows() {
 #[test]
 fn the_file_is_marked_as_ours_and_written_durably() {
     let file = File::new();
-    let store = file.store();
+    let mut store = file.store();
     let pragma = |name: &str| store.pragma(name);
     assert_eq!(pragma("application_id"), APPLICATION_ID.to_string());
     assert_eq!(pragma("user_version"), SCHEMA.to_string());
     assert_eq!(pragma("journal_mode"), "wal");
     assert_eq!(pragma("synchronous"), "2", "FULL");
     assert_eq!(pragma("foreign_keys"), "1");
+    store.trust_the_power().unwrap();
+    assert_eq!(store.pragma("synchronous"), "1", "NORMAL");
 }
 
 #[test]

@@ -127,8 +127,7 @@ impl Runner<'_> {
         operator_dice: Option<Dice>,
         outer: &mut dyn Subscriber,
     ) -> anyhow::Result<(End, RigTime, Vec<Answered>)> {
-        let mut builder = tokio::runtime::Builder::new_current_thread();
-        let runtime = builder.enable_time().start_paused(true).build()?;
+        let runtime = app::runtime(&source)?;
         let order = LotOrder {
             lot: lot.to_owned(),
             recipe: self.recipe.name.clone(),

@@ -304,23 +304,18 @@ fn an_adapter_reads_only_when_asked() {
 #[test]
 fn virtual_time_serves_streams_at_their_latency() {
     use tokio::io::{AsyncReadExt, AsyncWriteExt};
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_time()
-        .start_paused(true)
-        .build()
-        .unwrap();
-    runtime.block_on(async {
+    let answered = virtual_time::block_on(async {
         let plugs = super::serve::virtual_time(&bench(SMU));
         let mut host = plugs[0].1.open().unwrap();
-        let start = tokio::time::Instant::now();
+        let start_us = virtual_time::now_us();
         host.write_all(b"*RST;*OPC?\n").await.unwrap();
         let mut reply = [0; 2];
         host.read_exact(&mut reply).await.unwrap();
-        // One rig microsecond is a millisecond of the runtime.
-        let rig_us = start.elapsed().as_millis();
+        let rig_us = virtual_time::now_us() - start_us;
         assert_eq!(&reply, b"1\n");
         assert!((20_000..30_000).contains(&rig_us), "{rig_us}");
     });
+    answered.unwrap();
 }
 
 #[test]

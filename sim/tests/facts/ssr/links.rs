@@ -7,12 +7,8 @@ use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
 
 use super::hand::{Hand, options};
 
-fn paused<F: Future>(work: F) -> F::Output {
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_time()
-        .start_paused(true)
-        .build();
-    runtime.expect("a runtime").block_on(work)
+fn in_virtual_time<F: Future>(work: F) -> F::Output {
+    virtual_time::block_on(work).expect("a runtime")
 }
 
 fn rig(faults: &[&str]) -> SharedRig {
@@ -21,7 +17,7 @@ fn rig(faults: &[&str]) -> SharedRig {
 
 #[test]
 fn plugs_and_lines_share_one_clock() {
-    paused(async {
+    in_virtual_time(async {
         let rig = rig(&[]);
         rig.advance(5_000_000);
         let lines = wire::plugs(&rig);
