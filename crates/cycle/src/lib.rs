@@ -174,6 +174,8 @@ pub struct Cycle {
     worst_age: Span,
     /// Motion that the guard refused last; cleared when another motion begins.
     refused: Option<view::MotionView>,
+    /// Buttons that the last view shows as refused.
+    refusals: publish::Refusals,
     lateness: Lateness,
     timer: Timer,
 }
@@ -222,6 +224,7 @@ impl Cycle {
             published_state: packml::State::Stopped,
             worst_age: Span(0),
             refused: None,
+            refusals: publish::Refusals::default(),
             lost_status: None,
             lateness,
         }

@@ -13,6 +13,7 @@ use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
 use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, RackView, Reaction, Token};
 use std::collections::BTreeMap;
+use std::mem::take;
 use texts::Lang;
 use units::{RigTime, Span};
 
@@ -72,6 +73,7 @@ impl Cycle {
         }
         self.publish_at = now + snapshots.every;
         let mut machine = self.machine(now);
+        machine.buttons = buttons(&self.station, &mut self.refusals);
         machine.jogs = self.jog_preview(now);
         let station = &self.station;
         let (activity, ledger) = (station.activity(), station.ledger());
@@ -97,7 +99,7 @@ impl Cycle {
         Machine {
             state: station.outer().name().into(),
             mode: station.mode().name().into(),
-            buttons: buttons(station),
+            buttons: Vec::new(),
             actuators: Actuator::ALL
                 .iter()
                 .filter_map(|actuator| self.actuator(*actuator, now))
@@ -177,7 +179,7 @@ impl Cycle {
     }
 }
 
-fn buttons(station: &Station) -> Vec<Button> {
+fn buttons(station: &Station, refusals: &mut Refusals) -> Vec<Button> {
     let commands = Command::ALL
         .iter()
         .map(|it| (it.name(), "", station.may(*it)));
@@ -193,7 +195,7 @@ fn buttons(station: &Station) -> Vec<Button> {
         ("start", "lot", station.may_leave()),
         ("close_lot", "", station.may_close()),
     ];
-    let mut refusals = Refusals::default();
+    refusals.next_view();
     let button = |(order, with, may): (&str, &str, Result<(), Refused>)| Button {
         order: order.into(),
         with: with.into(),
@@ -204,26 +206,42 @@ fn buttons(station: &Station) -> Vec<Button> {
     all.map(button).collect()
 }
 
-/// Refused buttons by their reason. Most of them share a few reasons, and the texts of a reason take longer than all
-/// else of the view.
+/// Refused buttons by their reason. Most of them share a few reasons, which stay from view to view, and the texts of a
+/// reason take longer than all else of the view.
 #[derive(Default)]
-struct Refusals(Vec<(Refused, Button)>);
+pub(super) struct Refusals {
+    view: Vec<(Refused, Button)>,
+    last_view: Vec<(Refused, Button)>,
+}
 
 impl Refusals {
+    /// Begins a view; reasons that are not in the last one are forgotten.
+    fn next_view(&mut self) {
+        self.last_view = take(&mut self.view);
+    }
+
     /// Returns a button without an order that is refused for this reason.
     fn of(&mut self, why: Refused) -> Button {
-        if let Some((_, known)) = self.0.iter().find(|it| it.0 == why) {
+        if let Some((_, known)) = self.view.iter().find(|it| it.0 == why) {
             return known.clone();
         }
-        let message = why.message();
-        let refused = Button {
-            why_en: message.say(Lang::En),
-            why_zh: message.say(Lang::Zh),
-            why: Some(message),
-            ..Button::default()
+        let place = self.last_view.iter().position(|it| it.0 == why);
+        let known = match place {
+            Some(place) => self.last_view.swap_remove(place),
+            None => (why.clone(), refused(&why)),
         };
-        self.0.push((why, refused.clone()));
-        refused
+        self.view.push(known.clone());
+        known.1
+    }
+}
+
+fn refused(why: &Refused) -> Button {
+    let message = why.message();
+    Button {
+        why_en: message.say(Lang::En),
+        why_zh: message.say(Lang::Zh),
+        why: Some(message),
+        ..Button::default()
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A runtime of [`builder`] moves the clock on just before its thread would park. Clock and timers belong to that thread,
 //! so that reading the clock or setting a timer takes no lock. The paused clock of tokio does the same in steps of a
-//! millisecond; its timer wheel wakes the driver about twice for each timer, which took a fifth of a simulated lot.
+//! millisecond; its timer wheel wakes the driver about twice for each timer, which took a sixth of a simulated lot.
 //!
 //! ```
 //! let began_us = virtual_time::now_us();
