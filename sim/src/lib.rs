@@ -1,8 +1,8 @@
 //! The simulated rig: modules, mechanism and specimens of a relay tester, behind serial lines.
 //!
 //! A host sends bytes to a line and receives the bytes that real modules would send; the simulated physics behind the
-//! terminals determines the values in them. The controller shares nothing with this crate but bytes and the files in
-//! `config/`.
+//! terminals determines the values in them. The controller shares nothing with this crate but bytes, the files in
+//! `config/` and the clock of virtual time.
 //!
 //! | module | content, in reading order |
 //! |---|---|

@@ -42,8 +42,8 @@ impl Plug {
     }
 }
 
-/// Opens every line and spawns its task on the current runtime, one of [`virtual_time::builder`]. Rig time continues from its present value. A
-/// stream that has ended cannot be opened again.
+/// Opens every line and spawns its task on the current runtime, one of [`virtual_time::builder`]. Rig time continues from
+/// its present value. A stream that has ended cannot be opened again.
 pub fn in_process(rig: &SharedRig) -> Vec<(String, DuplexStream)> {
     let opened = |(name, plug): (String, Plug)| plug.open().map(|stream| (name, stream));
     plugs(rig).into_iter().filter_map(opened).collect()

@@ -55,7 +55,7 @@ export async function press(page, button) {
   await page.click(button);
 }
 
-/** Clicks a button that may be disabled, once it is in view: the page answers with its reason. */
+/** Clicks a button that may be disabled, once it is visible: the page answers with its reason. */
 export async function clickRefused(button) {
   await button.waitFor();
   await button.click({ force: true });

@@ -136,7 +136,7 @@ test("dialogs and refusals have Chinese words", async () => {
     if (await page.isVisible("#decide")) await page.click("#decide_cancel");
   }
   await page.click('nav a[href="#io"]');
-  await page.waitForSelector("#modes button");
+  for (const kind of ["#modes", "#jogs"]) await page.waitForSelector(kind + " button");
   for (const button of await page.locator("#modes button, #jogs button").all()) {
     await clickRefused(button);
     await page.waitForFunction(() => document.getElementById("io_answer").textContent !== "");

@@ -172,7 +172,8 @@ pub fn block_on<T>(
 }
 
 /// Creates a runtime of one thread for runs on `source`. In virtual time it has neither I/O nor timers of the wall clock:
-/// a rig in this process has no file or socket, and I/O would call the kernel at each jump of the clock. One blocking thread does all work on the history: each thread that SQLite works on keeps memory of its own.
+/// a rig in this process has no file or socket, and I/O would call the kernel at each jump of the clock. One blocking
+/// thread does all work on the history: each thread that SQLite works on keeps memory of its own.
 ///
 /// # Errors
 /// Fails when the operating system refuses the runtime.

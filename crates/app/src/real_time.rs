@@ -292,7 +292,6 @@ mod tests {
         assert_eq!(granted as usize + rights.refused.len(), 2, "{rights:?}");
     }
 
-    #[cfg(feature = "sim")]
     #[test]
     fn virtual_time_stays_on_the_callers_thread() {
         virtual_time::block_on(async {

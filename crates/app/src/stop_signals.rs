@@ -133,7 +133,6 @@ mod tests {
         assert_eq!(process.wait().unwrap().code(), Some(3));
     }
 
-    #[cfg(feature = "sim")]
     #[tokio::test(start_paused = true)]
     async fn a_second_signal_gives_the_run_twenty_seconds() {
         let mut left = 2;

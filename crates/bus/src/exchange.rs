@@ -5,7 +5,7 @@ use super::{LineLog, Pace, Port, Timer};
 use dcon::{Command, FRAME_LIMIT};
 use std::future::poll_fn;
 use std::io;
-use std::pin::{Pin, pin};
+use std::pin::Pin;
 use std::task::Poll;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, ReadBuf};
 use units::{RigTime, Span};
@@ -112,13 +112,12 @@ impl Exchange<'_> {
     ) -> io::Result<FrameEnd> {
         assert!(!request.is_empty(), "an empty request");
         frame.clear();
-        let mut timer = pin!(self.pace.sleep_until(deadline));
-        if !self.write(request, timer.as_mut()).await? {
+        if !self.write(request, deadline).await? {
             return Ok(FrameEnd::TimedOut);
         }
         let mut piece = [0; 2 * FRAME_LIMIT];
         let heard = loop {
-            let Some(count) = self.piece(&mut piece, timer.as_mut()).await? else {
+            let Some(count) = self.piece(&mut piece, deadline).await? else {
                 break FrameEnd::TimedOut;
             };
             if let Some(heard) = frame.push(&piece[..count]) {
@@ -150,14 +149,13 @@ impl Exchange<'_> {
             strays: false,
             last_heard: self.pace.now(),
         };
-        let mut timer = pin!(self.pace.sleep_until(deadline));
-        if !self.write(&request, timer.as_mut()).await? {
+        if !self.write(&request, deadline).await? {
             return Ok(named);
         }
         let mut frame = Frame::new();
         let mut piece = [0; 2 * FRAME_LIMIT];
         while !named.by_module {
-            let Some(count) = self.piece(&mut piece, timer.as_mut()).await? else {
+            let Some(count) = self.piece(&mut piece, deadline).await? else {
                 break;
             };
             named.last_heard = self.pace.now();
@@ -186,38 +184,29 @@ impl Exchange<'_> {
 
     /// Writes a broadcast, which has no reply.
     pub(super) async fn broadcast(&mut self, request: &[u8], deadline: RigTime) -> io::Result<()> {
-        let timer = pin!(self.pace.sleep_until(deadline));
-        self.write(request, timer).await.map(|_| ())
+        self.write(request, deadline).await.map(|_| ())
     }
 
-    /// Writes `bytes`; returns false when the port has not accepted them before `timer` fires.
-    async fn write(
-        &mut self,
-        bytes: &[u8],
-        timer: Pin<&mut impl Future<Output = ()>>,
-    ) -> io::Result<bool> {
+    /// Writes `bytes`; returns false when the port has not accepted them before `deadline`.
+    async fn write(&mut self, bytes: &[u8], deadline: RigTime) -> io::Result<bool> {
         self.note(Direction::Sent, bytes);
         tokio::select! {
             biased;
             written = self.port.write_all(bytes) => written.map(|()| true),
-            () = timer => Ok(false),
+            () = self.pace.sleep_until(deadline) => Ok(false),
         }
     }
 
-    /// Reads the next bytes; returns `None` when `timer` has fired and no byte is waiting.
+    /// Reads the next bytes; returns `None` when `deadline` has passed and no byte is waiting.
     ///
-    /// A busy host may wake late and then find the timer fired *and* the reply in the buffer of the port. The module
+    /// A busy host may wake late and then find the deadline passed *and* the reply in the buffer of the port. The module
     /// was not silent in this case, so this function polls the reactor once more before it gives up; that poll takes no
     /// time.
-    async fn piece(
-        &mut self,
-        piece: &mut [u8],
-        timer: Pin<&mut impl Future<Output = ()>>,
-    ) -> io::Result<Option<usize>> {
+    async fn piece(&mut self, piece: &mut [u8], deadline: RigTime) -> io::Result<Option<usize>> {
         let in_time = tokio::select! {
             biased;
             count = self.port.read(piece) => Some(count?),
-            () = timer => None,
+            () = self.pace.sleep_until(deadline) => None,
         };
         let count = match in_time {
             Some(count) => Some(count),
@@ -283,8 +272,7 @@ impl Exchange<'_> {
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut until = last_heard + silence;
         while until <= limit {
-            let timer = pin!(self.pace.sleep_until(until));
-            let Some(count) = self.piece(&mut piece, timer).await? else {
+            let Some(count) = self.piece(&mut piece, until).await? else {
                 return Ok(SilenceEnd::Silent);
             };
             self.note(Direction::Stray, &piece[..count]);

@@ -59,7 +59,7 @@
 //! | `transaction.rs`, `exchange.rs` | one transaction, which drops late replies; the bytes of one exchange |
 //! | `outstanding.rs` | remembers replies that may still arrive late |
 //! | `probation.rs` | remembers addresses whose replies need confirmation |
-//! | `pace.rs` | rig time on tokio's timers, real or virtual |
+//! | `pace.rs` | rig time, real or virtual |
 //! | `passage.rs` | how late this computer passes bytes on |
 //! | `settings.rs`, `wire.rs` | time-outs, and the time that characters take |
 //! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module, shared log |

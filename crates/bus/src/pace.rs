@@ -7,7 +7,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 use units::{RigTime, Span};
 
-/// Clock of the rig. Copies show the same time.
+/// Clock of the rig. Copies show the same time; at virtual pace only on the thread that created the clock.
 #[derive(Debug, Clone, Copy)]
 pub struct Pace(Clock);
 
@@ -28,8 +28,7 @@ impl Pace {
         Self(Clock::Wall(Instant::now()))
     }
 
-    /// Returns a clock at virtual pace; its time 0 is now. Copies work only on this thread, in a runtime of
-    /// [`virtual_time::builder`].
+    /// Returns a clock at virtual pace; its time 0 is now. Timers need a runtime of [`virtual_time::builder`].
     pub fn virtual_time() -> Self {
         Self(Clock::Virtual(virtual_time::now_us()))
     }
@@ -43,7 +42,11 @@ impl Pace {
     pub fn now(&self) -> RigTime {
         RigTime(match self.0 {
             Clock::Wall(began) => began.elapsed().as_micros() as u64,
-            Clock::Virtual(began_us) => virtual_time::now_us() - began_us,
+            Clock::Virtual(began_us) => {
+                let now_us = virtual_time::now_us();
+                assert!(now_us >= began_us, "the clock of another thread");
+                now_us - began_us
+            }
         })
     }
 

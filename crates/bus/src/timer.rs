@@ -10,8 +10,7 @@ use std::sync::OnceLock;
 use tokio::net::unix::pipe::Receiver;
 use units::RigTime;
 
-/// Timer of one task. At real pace a kernel timer wakes the task; at virtual pace, or where the kernel refuses a timer,
-/// tokio's timer does.
+/// Timer of one task. At real pace a kernel timer wakes the task, or tokio's timer where the kernel refuses one.
 #[derive(Debug)]
 pub struct Timer {
     pace: Pace,

@@ -1,7 +1,7 @@
 //! History: every lot, part, measurement, reply and alarm of a rig, in one SQLite file.
 //!
 //! - [`Store`], the only writer, takes records ([`Row`]) in batches, one transaction each: an acknowledged batch
-//!   survives power loss, and a failed batch leaves no row.
+//!   survives power loss ([`Store::trust_the_power`] makes an exception), and a failed batch leaves no row.
 //! - [`Archive`] is the reader of the file of a rig, or of a [`Server`] with many rigs. Command line, page and exports
 //!   select with the same [`Filter`].
 //! - A part has one row: recording the part again adds none; its landing or interruption completes the row. Opening a

@@ -1,6 +1,6 @@
 //! The writer of the history: opens runs of lots, records batches of rows, closes runs.
 //!
-//! A batch is one transaction and one disk flush. A rig records each part alone; an import records hundreds at once.
+//! A batch is one transaction and, unless the store trusts the power, one disk flush. A rig records each part alone; an import records hundreds at once.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Name and version of this program; every run stores them and every printed page shows them.
 pub(crate) const PROGRAM: &str = concat!("relayrig ", env!("CARGO_PKG_VERSION"));
 
-/// The writer of a history file. A call blocks for about one disk flush.
+/// The writer of a history file. A call blocks for at most about one disk flush.
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,

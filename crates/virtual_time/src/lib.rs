@@ -27,7 +27,7 @@ type Key = (u64, u64);
 /// Clock of one thread.
 struct Clock {
     now_us: u64,
-    /// Timers that have not fired.
+    /// Timers that have not fired; all lie in the future.
     timers: BTreeMap<Key, Waker>,
     /// Number of the next timer.
     number: u64,
@@ -71,7 +71,7 @@ pub fn now_us() -> u64 {
 }
 
 /// Returns a timer that fires when the virtual time is `at_us`, at once if that has passed. It fires only on the thread of
-/// a runtime of [`builder`]. A dropped timer leaves nothing behind.
+/// a runtime of [`builder`]. A timer that is dropped on its thread leaves nothing behind.
 pub fn sleep_until(at_us: u64) -> Sleep {
     Sleep { at_us, key: None }
 }
@@ -97,6 +97,7 @@ pub fn block_on<F: Future>(work: F) -> io::Result<F::Output> {
 /// Moves the clock of this thread `us` ahead at once, as a host does that pauses: timers of that time fire late.
 pub fn pause_host(us: u64) {
     CLOCK.with_borrow_mut(|clock| clock.now_us += us);
+    wake_due();
 }
 
 /// Runs `work` for at most `us` of virtual time; returns `None` when it has not ended by then.
@@ -108,14 +109,19 @@ pub async fn within<F: Future>(us: u64, work: F) -> Option<F::Output> {
     }
 }
 
-/// Moves the clock to the next timer, and wakes the tasks of all timers of that instant in the order in which they were
-/// set.
+/// Moves the clock to the next timer.
 fn jump() {
     CLOCK.with_borrow_mut(|clock| {
         if let Some(((at_us, _), _)) = clock.timers.first_key_value() {
-            clock.now_us = clock.now_us.max(*at_us);
+            debug_assert!(*at_us > clock.now_us, "a timer has been missed");
+            clock.now_us = *at_us;
         }
     });
+    wake_due();
+}
+
+/// Wakes the tasks of the timers whose instant has come, in the order of the instants and then of their setting.
+fn wake_due() {
     // A woken task may drop timers, and so borrow the clock.
     while let Some(waker) = CLOCK.with_borrow_mut(Clock::take_due) {
         waker.wake();

@@ -1,6 +1,7 @@
 //! Allowed imports: dependencies that manifests must not have, and the order of the modules inside `machine`.
 
-use super::tree::{Source, assert_none, files, has_word, rust_files};
+use super::tree::{Source, assert_none, files, has_word, root, rust_files};
+use std::collections::BTreeSet;
 
 /// Crates without clock, file, socket or thread, with their allowed dependencies.
 const PURE: &[(&str, &[&str])] = &[
@@ -154,32 +155,17 @@ fn machine_modules_import_only_what_the_table_allows() {
 
 #[test]
 fn the_simulated_rig_and_the_controller_share_no_code() {
-    let mut broken = Vec::new();
-    let manifests = files(&["crates", "sim"]);
-    let manifests = || {
-        manifests
-            .iter()
-            .filter(|it| it.path.ends_with("Cargo.toml"))
-    };
-    let own = |name: &str| manifests().any(|it| it.path == format!("crates/{name}/Cargo.toml"));
-    for manifest in manifests().filter(|it| it.path.starts_with("sim/")) {
-        let named = dependencies(&manifest.text).into_iter();
-        for found in named.filter(|it| own(it) && it != SHARED_CLOCK) {
-            broken.push(format!(
-                "{}: the simulated rig must not need `{found}` of the controller",
-                manifest.path
-            ));
-        }
-        for (line, _) in manifest
-            .code()
-            .filter(|(_, code)| code.contains("path = \".."))
-        {
-            broken.push(format!(
-                "{}:{line}: the simulated rig never depends on the controller",
-                manifest.path
-            ));
-        }
-    }
+    let lock = std::fs::read_to_string(root().join("Cargo.lock")).unwrap();
+    let own = files(&["crates"]).into_iter();
+    let own = own.filter_map(|it| Some(it.path.strip_suffix("/Cargo.toml")?.to_owned()));
+    let own: BTreeSet<String> = own
+        .filter_map(|it| Some(it.strip_prefix("crates/")?.to_owned()))
+        .collect();
+    let mut broken: Vec<String> = needed(&lock, "rigsim")
+        .intersection(&own)
+        .filter(|it| *it != SHARED_CLOCK)
+        .map(|it| format!("Cargo.lock: the simulated rig needs `{it}` of the controller"))
+        .collect();
     for source in rust_files(&["crates"]) {
         let allowed = SIMULATING.iter().any(|it| source.path.starts_with(it));
         if allowed || source.path.contains("/benches/") {
@@ -193,6 +179,36 @@ fn the_simulated_rig_and_the_controller_share_no_code() {
         }
     }
     assert_none(&broken);
+}
+
+/// Returns the packages that a package of the lock file needs, directly or not, for its program or its tests.
+fn needed(lock: &str, package: &str) -> BTreeSet<String> {
+    let lock: toml::Table = lock.parse().unwrap();
+    let packages = lock["package"].as_array().unwrap();
+    let mut needed = BTreeSet::new();
+    let mut open = vec![package.to_owned()];
+    while let Some(name) = open.pop() {
+        let versions = packages
+            .iter()
+            .filter(|it| it["name"].as_str() == Some(&name));
+        for list in versions.filter_map(|it| it.get("dependencies")) {
+            for named in list.as_array().unwrap() {
+                // A version follows the name where the lock file has several.
+                let named = named.as_str().unwrap().split(' ').next().unwrap();
+                if needed.insert(named.to_owned()) {
+                    open.push(named.to_owned());
+                }
+            }
+        }
+    }
+    needed
+}
+
+#[test]
+fn an_indirect_dependency_is_found() {
+    let lock = "[[package]]\nname = \"a\"\ndependencies = [\"b 1.0.0\"]\n[[package]]\nname = \"b\"\n\
+                dependencies = [\"c\"]\n[[package]]\nname = \"c\"\n[[package]]\nname = \"d\"\n";
+    assert_eq!(needed(lock, "a"), ["b", "c"].map(str::to_owned).into());
 }
 
 /// The crate that both sides use: virtual time, which knows neither.

@@ -1,18 +1,19 @@
 //! Tests: a busy host wakes late, and its clock advances between two lines of code. Neither makes a module seem silent.
 
 use super::*;
+use crate::outstanding::identification;
+use std::collections::VecDeque;
 use std::io;
 use std::pin::Pin;
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
-/// Port of a host that sleeps until `wakes_at`: the reply lies in its buffer long before, but the reactor notices it
-/// only at the first poll after the wake-up.
+/// Port of a host that sleeps until the instant beside each piece: the piece lies in its buffer long before, but the
+/// reactor notices it only at the second poll after the wake-up.
 struct Unnoticed {
     pace: Pace,
-    wakes_at: RigTime,
+    pieces: VecDeque<(RigTime, &'static [u8])>,
     awake: bool,
-    reply: &'static [u8],
 }
 
 impl AsyncRead for Unnoticed {
@@ -21,14 +22,14 @@ impl AsyncRead for Unnoticed {
         _: &mut Context<'_>,
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
-        if self.pace.now() < self.wakes_at || !std::mem::replace(&mut self.awake, true) {
+        let asleep_until = self.pieces.front().map(|it| it.0);
+        let sleeps = asleep_until.is_none_or(|at| self.pace.now() < at);
+        if sleeps || !std::mem::replace(&mut self.awake, true) {
             return Poll::Pending;
         }
-        let reply = std::mem::take(&mut self.reply);
-        if reply.is_empty() {
-            return Poll::Pending;
-        }
-        buffer.put_slice(reply);
+        self.awake = false;
+        let (_, piece) = self.pieces.pop_front().unwrap();
+        buffer.put_slice(piece);
         Poll::Ready(Ok(()))
     }
 }
@@ -72,28 +73,47 @@ async fn exchange(port: impl Port + 'static, pace: Pace, command: Command) -> An
 #[test]
 fn a_reply_that_waited_for_the_host_counts() {
     let limit = settings().time_out(&count());
-    let answer = |reply| {
-        in_virtual_time(async move {
-            let pace = Pace::virtual_time();
-            let port = Unnoticed {
-                pace,
-                wakes_at: pace.now() + limit,
-                awake: false,
-                reply,
-            };
-            exchange(port, pace, count()).await
-        })
-    };
-    let heard = answer(THIRTY);
+    let heard = answer(vec![(RigTime(0) + limit, THIRTY)]);
     assert_eq!(heard.outcome, Ok(Reply::Count(30)));
     assert_eq!(heard.answered_at.since(heard.requested_at), limit);
-    assert!(matches!(
-        answer(b"").outcome,
+    assert!(is_silent(&answer(vec![])));
+}
+
+#[test]
+fn half_a_reply_that_waited_is_no_answer() {
+    let asked_until = RigTime(0) + settings().time_out(&count());
+    let half: &[u8] = b">0000";
+    assert!(is_silent(&answer(vec![(asked_until, half)])));
+    // The module also has half a name when the wait for its name ends.
+    let named_until =
+        asked_until + settings().time_out(&identification(count().address().unwrap()));
+    assert!(is_silent(&answer(vec![
+        (asked_until, half),
+        (named_until, b"!0170"),
+    ])));
+}
+
+/// Returns the answer to a request whose reply comes in `pieces`.
+fn answer(pieces: Vec<(RigTime, &'static [u8])>) -> Answer {
+    in_virtual_time(async move {
+        let pace = Pace::virtual_time();
+        let port = Unnoticed {
+            pace,
+            pieces: pieces.into(),
+            awake: false,
+        };
+        exchange(port, pace, count()).await
+    })
+}
+
+fn is_silent(answer: &Answer) -> bool {
+    matches!(
+        answer.outcome,
         Err(LineError {
             failure: Failure::TimeOut(_),
             ..
         })
-    ));
+    )
 }
 
 #[test]
