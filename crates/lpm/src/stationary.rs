@@ -86,7 +86,7 @@ impl Pieces {
         first
     }
 
-    #[inline]
+    #[inline(always)]
     fn enter(
         &mut self,
         space: &mut impl Entering,

@@ -53,16 +53,32 @@ impl Default for Grid {
 
 impl Grid {
     /// Enters a piece in every cell that its silhouette touches, or in the open cell.
+    #[inline(always)]
     pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) -> Reach {
-        let is_inside = seat.is_small && self.reach_over(&seat.area);
+        if !(seat.is_small && self.area.holds(&seat.area)) {
+            return self.put_outside(piece, cover, seat);
+        }
         let lane = self.lane(piece, cover);
         let reach = lane.extent.reach();
         let word = reach.word();
-        if is_inside {
-            self.each_cell(&seat.area, |pool, cell| pool.put(cell, &lane, word));
-        } else {
-            self.in_the_open(|pool, cell| pool.put(cell, &lane, word));
+        self.each_cell(&seat.area, |pool, cell| pool.put(cell, &lane, word));
+        reach
+    }
+
+    /// Enters a piece that the grid does not cover: extends the grid, or enters the piece in the open cell.
+    #[cold]
+    #[inline(never)]
+    fn put_outside(&mut self, piece: u32, cover: &Cover, seat: &Seat) -> Reach {
+        if seat.is_small && self.reach_over(&seat.area) {
+            return self.put(piece, cover, seat);
         }
+        let lane = self.lane(piece, cover);
+        let reach = lane.extent.reach();
+        let cell = Cell {
+            layers: &mut self.open_layers,
+            head: &mut self.open_head,
+        };
+        self.pool.put(cell, &lane, reach.word());
         reach
     }
 
@@ -73,31 +89,40 @@ impl Grid {
     }
 
     /// Removes a piece and returns its layers; `None` when the grid does not have it.
+    #[inline(always)]
     pub(crate) fn take(&mut self, piece: u32, seat: &Seat) -> Option<Reach> {
         let mut taken = None;
         if seat.is_small && self.area.holds(&seat.area) {
             self.each_cell(&seat.area, |pool, cell| taken = pool.take(cell, piece));
         }
         // A piece that was too far out when it was entered stays in the open cell, even if the grid has grown since.
-        if taken.is_none() {
-            self.in_the_open(|pool, cell| taken = pool.take(cell, piece));
-        }
-        taken.map(|extent| extent.reach())
+        let [low, high] = taken.or_else(|| self.take_open(piece))?;
+        Some(Reach::between(low, high))
     }
 
-    #[inline]
+    /// Removes a piece from the open cell and returns the codes of its heights.
+    #[cold]
+    #[inline(never)]
+    fn take_open(&mut self, piece: u32) -> Option<[i16; 2]> {
+        let cell = Cell {
+            layers: &mut self.open_layers,
+            head: &mut self.open_head,
+        };
+        self.pool.take(cell, piece)
+    }
+
+    #[inline(always)]
     fn each_cell(&mut self, area: &Area, mut change: impl FnMut(&mut Pool, Cell<'_>)) {
-        for row in rows(self.area.low, self.columns, area) {
-            let cells = self.layers[row.clone()].iter_mut();
-            for (layers, head) in cells.zip(&mut self.heads[row]) {
+        let [wide, deep] =
+            [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize + 1);
+        let mut first = number(self.area.low, self.columns, area.low);
+        for _ in 0..deep {
+            for place in first..first + wide {
+                let (layers, head) = (&mut self.layers[place], &mut self.heads[place]);
                 change(&mut self.pool, Cell { layers, head });
             }
+            first += self.columns;
         }
-    }
-
-    fn in_the_open(&mut self, change: impl FnOnce(&mut Pool, Cell<'_>)) {
-        let (layers, head) = (&mut self.open_layers, &mut self.open_head);
-        change(&mut self.pool, Cell { layers, head });
     }
 
     /// Returns the part of an area that the grid covers.

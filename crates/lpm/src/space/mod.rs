@@ -110,7 +110,7 @@ pub(crate) trait Entering {
 }
 
 impl Entering for Space {
-    #[inline]
+    #[inline(always)]
     fn enter(&mut self, piece: u32, cover: &Cover) {
         let reach = self.grid.put(piece, cover, &Seat::of(cover));
         self.layers.join(reach, cover.low[2], cover.high[2]);

@@ -114,17 +114,19 @@ impl Bundle {
         self.set(at, &free);
     }
 
-    /// Returns the lane of a piece. Looks at lane `last` first, because parts that pass through a fixture leave it
-    /// before its own elements do.
+    /// Returns the lane of a piece.
     #[inline]
-    pub(super) fn lane_of(&self, piece: u32, last: usize) -> Option<usize> {
-        if self.pieces[last] == piece {
-            return Some(last);
-        }
+    pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
         let word = (0..LANES).fold(0, |word, lane| {
             word | u32::from(self.pieces[lane] == piece) << lane
         });
         (word != 0).then(|| word.trailing_zeros() as usize % LANES)
+    }
+
+    /// Returns the codes of the heights between which a lane lies.
+    #[inline]
+    pub(super) fn heights(&self, at: usize) -> [i16; 2] {
+        [self.low[2][at], self.high[2][at]]
     }
 
     /// Returns the word of all layers in which this bundle has pieces, without the lane `gone`.
