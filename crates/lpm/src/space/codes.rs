@@ -21,18 +21,18 @@ const HEIGHT_PER_MM: f32 = 32.0;
 /// Height of code 0, mm; codes reach from about -570 to 1470 mm.
 const MIDDLE_MM: f32 = 448.0;
 
-/// Codes of a box along x, y and z.
+/// Codes of a box along x, y and z; the fourth members mean nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Extent {
-    pub(super) low: [i16; 3],
-    pub(super) high: [i16; 3],
+    pub(super) low: [i16; 4],
+    pub(super) high: [i16; 4],
 }
 
 impl Extent {
     /// Meets no box on any path, because its codes lie beyond those of every place.
     pub(super) const NOWHERE: Extent = Extent {
-        low: [i16::MAX; 3],
-        high: [i16::MIN; 3],
+        low: [i16::MAX; 4],
+        high: [i16::MIN; 4],
     };
 
     /// Returns the layers into which the box reaches; no scale changes them.
@@ -74,10 +74,10 @@ impl Scale {
             let moved = Four::of(bound).minus(Four::of(&self.middle));
             moved.times(Four::of(&self.per_mm))
         });
-        let (low, high) = (lower_codes(low), upper_codes(high));
+        let [a, b, c, d, e, f, g, h] = lower_codes(low).nearest_codes(upper_codes(high));
         Extent {
-            low: [low[0], low[1], low[2]].map(|code| code as i16),
-            high: [high[0], high[1], high[2]].map(|code| code as i16),
+            low: [a, b, c, d],
+            high: [e, f, g, h],
         }
     }
 
@@ -138,22 +138,24 @@ impl Scale {
 /// Returns the codes of two heights, mm.
 #[inline(always)]
 pub(super) fn heights(bottom_mm: f32, top_mm: f32) -> (i16, i16) {
-    let scaled = |mm: f32| (mm - MIDDLE_MM) * HEIGHT_PER_MM;
-    let [low, ..] = lower_codes(Four::all(scaled(bottom_mm)));
-    let [high, ..] = upper_codes(Four::all(scaled(top_mm)));
-    (low as i16, high as i16)
+    let scaled = |mm: f32| Four::all((mm - MIDDLE_MM) * HEIGHT_PER_MM);
+    let (low, high) = (lower_codes(scaled(bottom_mm)), upper_codes(scaled(top_mm)));
+    let [low, .., high] = low.nearest_codes(high);
+    (low, high)
 }
 
+/// Limits lower bounds in steps to those that have a code.
 #[inline(always)]
-fn lower_codes(steps: Four) -> [i32; 4] {
+fn lower_codes(steps: Four) -> Four {
     let within = steps.larger(Four::all(FIRST.into()));
-    within.smaller(Four::all(LAST.into())).nearest()
+    within.smaller(Four::all(LAST.into()))
 }
 
+/// Limits upper bounds in steps to those that have a code.
 #[inline(always)]
-fn upper_codes(steps: Four) -> [i32; 4] {
+fn upper_codes(steps: Four) -> Four {
     let within = steps.smaller(Four::all(LAST.into()));
-    within.larger(Four::all(FIRST.into())).nearest()
+    within.larger(Four::all(FIRST.into()))
 }
 
 /// How the codes of pieces give the fractions of a path at which a moving box reaches them.
@@ -179,10 +181,10 @@ struct Axis {
 const EARLIER: f32 = 1.0 - 8.0 * f32::EPSILON;
 
 impl Onset {
-    /// Returns the fraction of the path before which the box does not meet a piece with these rows of low and of high
-    /// codes. Selects by arithmetic, because branches here are unpredictable.
+    /// Returns the fraction of the path before which the box does not meet a piece with this extent. Selects by
+    /// arithmetic, because branches here are unpredictable.
     #[inline(always)]
-    pub(super) fn entry(&self, [low, high]: [[i16; 3]; 2]) -> f32 {
+    pub(super) fn entry(&self, Extent { low, high }: &Extent) -> f32 {
         let reached = |axis: usize| {
             let it = &self.axes[axis];
             let code = if it.is_backward {
@@ -308,8 +310,8 @@ mod tests {
                 continue;
             };
             let scale = Scale::over(&area);
-            let Extent { low, high } = scale.extent(&piece);
-            let entry = scale.onset(&Sweep::new(start, run)).entry([low, high]);
+            let extent = scale.extent(&piece);
+            let entry = scale.onset(&Sweep::new(start, run)).entry(&extent);
             assert!(
                 f64::from(entry) <= first,
                 "{entry} {first} {piece:?} {start:?} {run:?}"

@@ -81,6 +81,12 @@ impl Four {
         machine::nearest(self.0)
     }
 
+    /// Returns [`Four::nearest`] of `self`, then of `other`; each number must be in the range of an i16.
+    #[inline(always)]
+    pub(crate) fn nearest_codes(self, other: Four) -> [i16; 8] {
+        machine::nearest_codes(self.0, other.0)
+    }
+
     /// Returns a mask in which bit k is set when number k is at most that of `other`; never set for NaN.
     #[inline(always)]
     pub(crate) fn at_most(self, other: Four) -> u32 {
@@ -168,6 +174,17 @@ mod sse {
     }
 
     #[inline(always)]
+    pub(super) fn nearest_codes(a: Numbers, b: Numbers) -> [i16; 8] {
+        let mut codes = [0; 8];
+        // SAFETY: as above; eight numbers may be written.
+        unsafe {
+            let packed = _mm_packs_epi32(_mm_cvtps_epi32(a), _mm_cvtps_epi32(b));
+            _mm_storeu_si128(codes.as_mut_ptr().cast(), packed);
+        }
+        codes
+    }
+
+    #[inline(always)]
     pub(super) fn bits(a: Numbers) -> u32 {
         // SAFETY: as above.
         unsafe { _mm_movemask_ps(a) as u32 }
@@ -220,6 +237,10 @@ mod one_by_one {
 
     pub(super) fn nearest(a: Numbers) -> [i32; 4] {
         a.map(|number| number.round_ties_even() as i32)
+    }
+
+    pub(super) fn nearest_codes([a, b, c, d]: Numbers, [e, f, g, h]: Numbers) -> [i16; 8] {
+        [a, b, c, d, e, f, g, h].map(|number| number.round_ties_even() as i16)
     }
 
     pub(super) fn bits(a: Numbers) -> u32 {
@@ -291,6 +312,13 @@ mod tests {
                 assert_eq!(
                     sse::nearest(sse::of(&four)),
                     one_by_one::nearest(four),
+                    "{x:e}"
+                );
+                let codes = [four, four.map(|x| -x)].map(|four| four.map(|x| x % 32_000.0));
+                let [low, high] = codes.map(|four| sse::of(&four));
+                assert_eq!(
+                    sse::nearest_codes(low, high),
+                    one_by_one::nearest_codes(codes[0], codes[1]),
                     "{x:e}"
                 );
             }

@@ -65,6 +65,12 @@ impl Reach {
         }
     }
 
+    /// Returns the lowest and the highest layer. The modulus changes no valid layer and saves a bounds check.
+    #[inline(always)]
+    fn ends(self) -> [usize; 2] {
+        [self.low, self.high].map(|layer| usize::from(layer) % LAYERS)
+    }
+
     /// Returns a word with one bit set for each layer in reach.
     #[inline(always)]
     pub(crate) fn word(self) -> u64 {
@@ -141,10 +147,10 @@ impl Layers {
         self.pass(reach, 1);
     }
 
-    /// Enters where a piece begins and ends. The modulus changes no valid layer and saves a bounds check.
+    /// Enters where a piece begins and ends.
     #[inline]
     fn enclose(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
-        let [low, high] = [reach.low, reach.high].map(|layer| usize::from(layer) % LAYERS);
+        let [low, high] = reach.ends();
         self.beginning[low] += 1;
         self.ending[high] += 1;
         self.h1[low] = smaller(self.h1[low], bottom_mm);
@@ -175,7 +181,7 @@ impl Layers {
     /// Removes a piece. `h1` and `h2` of a layer stay until no piece begins or ends there; too wide an interval is
     /// safe.
     pub(crate) fn remove(&mut self, reach: Reach) {
-        let (low, high) = (usize::from(reach.low), usize::from(reach.high));
+        let [low, high] = reach.ends();
         self.pass(reach, u32::MAX);
         self.beginning[low] -= 1;
         self.ending[high] -= 1;

@@ -252,8 +252,8 @@ mod tests {
         let low = dice.pick(16_000) as i16 - 17_000;
         let high = low + dice.pick(2_000) as i16;
         let extent = Extent {
-            low: [0, 0, low],
-            high: [0, 0, high],
+            low: [0, 0, low, 0],
+            high: [0, 0, high, 0],
         };
         Lane { piece, extent }
     }
@@ -277,8 +277,8 @@ mod tests {
             .iter()
             .fold((i16::MAX, i16::MIN), |(low, high), lane| {
                 let Extent {
-                    low: [_, _, bottom],
-                    high: [_, _, top],
+                    low: [_, _, bottom, _],
+                    high: [_, _, top, _],
                 } = lane.extent;
                 (low.min(bottom), high.max(top))
             });

@@ -22,7 +22,7 @@ pub(super) struct Lane {
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct Bundle {
-    /// Codes of each axis; lanes that are not in use have those of [`Extent::NOWHERE`].
+    /// Codes of each axis; lanes that are not in use have the heights of [`Extent::NOWHERE`].
     low: [[i16; LANES]; 3],
     high: [[i16; LANES]; 3],
     pieces: [u32; LANES],
@@ -61,9 +61,10 @@ pub(super) struct Asked {
 impl Asked {
     #[inline(always)]
     pub(super) fn of(extent: &Extent) -> Asked {
+        let three = |[x, y, z, _]: [i16; 4]| [Eight::all(x), Eight::all(y), Eight::all(z)];
         Asked {
-            low: extent.low.map(Eight::all),
-            high: extent.high.map(Eight::all),
+            low: three(extent.low),
+            high: three(extent.high),
         }
     }
 
@@ -94,7 +95,7 @@ impl Bundle {
     /// Returns the silhouette of a lane.
     #[inline]
     pub(super) fn lane(&self, at: usize) -> Lane {
-        let member = |[x, y, z]: &[[i16; LANES]; 3]| [x[at], y[at], z[at]];
+        let member = |[x, y, z]: &[[i16; LANES]; 3]| [x[at], y[at], z[at], 0];
         Lane {
             piece: self.pieces[at],
             extent: Extent {
@@ -104,14 +105,11 @@ impl Bundle {
         }
     }
 
-    /// Frees a lane.
+    /// Frees a lane. Its codes along x and y may stay, because no box meets its heights.
     #[inline]
     pub(super) fn clear(&mut self, at: usize) {
-        let free = Lane {
-            piece: NONE,
-            extent: Extent::NOWHERE,
-        };
-        self.set(at, &free);
+        (self.low[2][at], self.high[2][at]) = (Extent::NOWHERE.low[2], Extent::NOWHERE.high[2]);
+        self.pieces[at] = NONE;
     }
 
     /// Returns the lane of a piece.
@@ -155,8 +153,7 @@ impl Bundle {
     /// Returns the fraction of the path before which the moving box does not meet the piece of a lane.
     #[inline(always)]
     pub(crate) fn entry(&self, lane: usize, onset: &Onset) -> f32 {
-        let Extent { low, high } = self.lane(lane).extent;
-        onset.entry([low, high])
+        onset.entry(&self.lane(lane).extent)
     }
 
     #[inline]
