@@ -33,6 +33,9 @@ impl Ends {
 /// Number of cells by which the grid extends beyond a piece outside it.
 pub(super) const GROWTH: i32 = 4;
 
+/// Maximum number of cells in which a piece is entered; larger pieces, such as the baseplate, go into the open cell.
+const MOST_CELLS_OF_A_PIECE: i64 = 128;
+
 /// A range of columns and rows of the grid; both ends are included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Area {
@@ -81,8 +84,14 @@ impl Area {
 
     /// Returns the number of cells.
     pub(super) fn cells(&self) -> i64 {
-        let edge = |axis: usize| i64::from(self.high[axis]) - i64::from(self.low[axis]) + 1;
+        let edge = |axis: usize| i64::from(self.high[axis] - self.low[axis]) + 1;
         edge(0) * edge(1)
+    }
+
+    /// Returns true when a piece that covers this area is entered in each of its cells.
+    #[inline(always)]
+    pub(super) fn is_small(&self) -> bool {
+        self.cells() <= MOST_CELLS_OF_A_PIECE
     }
 
     /// Returns true when the area has at most two by two cells.

@@ -54,23 +54,31 @@ impl Default for Grid {
 impl Grid {
     /// Enters a piece in every cell that its silhouette touches, or in the open cell.
     #[inline(always)]
-    pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) -> Reach {
-        if !(seat.is_small && self.area.holds(&seat.area)) {
-            return self.put_outside(piece, cover, seat);
+    pub(crate) fn put(&mut self, piece: u32, cover: &Cover) -> Reach {
+        let area = Area::of(cover);
+        if !self.has_seat(&area) {
+            return self.put_outside(piece, cover);
         }
         let lane = self.lane(piece, cover);
         let reach = lane.extent.reach();
         let word = reach.word();
-        self.each_cell(&seat.area, |pool, cell| pool.put(cell, &lane, word));
+        self.each_cell(&area, |pool, cell| pool.put(cell, &lane, word));
         reach
+    }
+
+    /// Returns true when a piece that covers `area` belongs in the cells of the grid as it is.
+    #[inline(always)]
+    fn has_seat(&self, area: &Area) -> bool {
+        self.area.holds(area) && area.is_small()
     }
 
     /// Enters a piece that the grid does not cover: extends the grid, or enters the piece in the open cell.
     #[cold]
     #[inline(never)]
-    fn put_outside(&mut self, piece: u32, cover: &Cover, seat: &Seat) -> Reach {
-        if seat.is_small && self.reach_over(&seat.area) {
-            return self.put(piece, cover, seat);
+    fn put_outside(&mut self, piece: u32, cover: &Cover) -> Reach {
+        let area = Area::of(cover);
+        if area.is_small() && self.reach_over(&area) {
+            return self.put(piece, cover);
         }
         let lane = self.lane(piece, cover);
         let reach = lane.extent.reach();
@@ -90,10 +98,10 @@ impl Grid {
 
     /// Removes a piece and returns its layers; `None` when the grid does not have it.
     #[inline(always)]
-    pub(crate) fn take(&mut self, piece: u32, seat: &Seat) -> Option<Reach> {
-        let mut taken = None;
-        if seat.is_small && self.area.holds(&seat.area) {
-            self.each_cell(&seat.area, |pool, cell| taken = pool.take(cell, piece));
+    pub(crate) fn take(&mut self, piece: u32, cover: &Cover) -> Option<Reach> {
+        let (area, mut taken) = (Area::of(cover), None);
+        if self.has_seat(&area) {
+            self.each_cell(&area, |pool, cell| taken = pool.take(cell, piece));
         }
         // A piece that was too far out when it was entered stays in the open cell, even if the grid has grown since.
         let [low, high] = taken.or_else(|| self.take_open(piece))?;
@@ -111,6 +119,7 @@ impl Grid {
         self.pool.take(cell, piece)
     }
 
+    /// Passes each cell of `area`, which the grid must cover, to `change`.
     #[inline(always)]
     fn each_cell(&mut self, area: &Area, mut change: impl FnMut(&mut Pool, Cell<'_>)) {
         let [wide, deep] =
@@ -258,7 +267,7 @@ impl Grid {
                 let lane = grid.lane(number, cover);
                 grid.put_reserved(&mut lanes, &lane, &seat.area);
             } else {
-                grid.put(number, cover, seat);
+                grid.put(number, cover);
             }
         }
         grid
@@ -300,10 +309,10 @@ impl Grid {
     }
 }
 
-/// Returns the number of the cell in a column and a row of a grid that begins at `low`.
+/// Returns the number of the cell in a column and a row of a grid that begins at `low`, both of them at least `low`.
 #[inline(always)]
 fn number(low: [i32; 2], columns: usize, [column, row]: [i32; 2]) -> usize {
-    (row - low[1]) as usize * columns + (column - low[0]) as usize
+    (row - low[1]) as u32 as usize * columns + (column - low[0]) as u32 as usize
 }
 
 /// Passes the number of each cell of `area`, in a grid that begins at `low`, to `show`. Most areas have at most two by

@@ -40,9 +40,6 @@ use grid::Grid;
 use layers::{Layers, Reach};
 use walk::Walk;
 
-/// Maximum number of cells in which a piece is entered; larger pieces, such as the baseplate, go into the open cell.
-const MOST_CELLS_OF_A_PIECE: i64 = 128;
-
 /// All stationary pieces, as the broad phase sees them: by their silhouettes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Space {
@@ -54,7 +51,7 @@ impl Space {
     /// Removes a piece, which was entered with `cover`, from its cells and layers.
     #[inline]
     pub(crate) fn remove(&mut self, piece: u32, cover: &Cover) {
-        if let Some(reach) = self.grid.take(piece, &Seat::of(cover)) {
+        if let Some(reach) = self.grid.take(piece, cover) {
             self.layers.remove(reach);
         }
     }
@@ -98,7 +95,7 @@ impl Seat {
         let area = Area::of(cover);
         Seat {
             area,
-            is_small: area.cells() <= MOST_CELLS_OF_A_PIECE,
+            is_small: area.is_small(),
         }
     }
 }
@@ -112,7 +109,7 @@ pub(crate) trait Entering {
 impl Entering for Space {
     #[inline(always)]
     fn enter(&mut self, piece: u32, cover: &Cover) {
-        let reach = self.grid.put(piece, cover, &Seat::of(cover));
+        let reach = self.grid.put(piece, cover);
         self.layers.join(reach, cover.low[2], cover.high[2]);
     }
 }
