@@ -5,6 +5,7 @@ use super::answer::ElementKey;
 use super::interior::Interior;
 use super::name::{Name, Names};
 use super::pose::{Frame, Pose};
+use super::prism::Checked;
 use super::shape::{Flaw, Shape};
 use super::space::{Filling, Space};
 use super::stationary::{NONE, Pieces};
@@ -49,7 +50,7 @@ impl Model {
     /// # Errors
     /// Fails with the [`Flaw`] of the shape or the pose; the model stays unchanged.
     pub fn insert(&mut self, id: &str, shape: &Shape, pose: &Pose) -> Result<ElementKey, Flaw> {
-        shape.check()?;
+        let checked = Checked::of(shape)?;
         pose.check()?;
         let slot = self.free.pop().unwrap_or(self.slots.len() as u32);
         let left = self.slots.get(slot as usize);
@@ -57,8 +58,8 @@ impl Model {
             slot,
             generation: left.map_or(0, |left| left.generation),
         };
-        let first = self.pieces.insert(&mut self.space, shape, pose, key);
-        let taken = self.taken(id, shape, pose, key, first);
+        let first = self.pieces.insert(&mut self.space, &checked, pose, key);
+        let taken = self.taken(id, &checked, pose, key, first);
         match self.slots.get_mut(slot as usize) {
             Some(left) => *left = taken,
             None => self.slots.push(taken),
@@ -80,14 +81,14 @@ impl Model {
         let mut filling = Filling::of(elements.size_hint().0);
         for (number, (id, shape, pose)) in elements.enumerate() {
             let flawed = |flaw| (number, flaw);
-            shape.check().map_err(flawed)?;
+            let checked = Checked::of(shape).map_err(flawed)?;
             pose.check().map_err(flawed)?;
             let key = ElementKey {
                 slot: number as u32,
                 generation: 0,
             };
-            let first = model.pieces.insert(&mut filling, shape, pose, key);
-            let taken = model.taken(id, shape, pose, key, first);
+            let first = model.pieces.insert(&mut filling, &checked, pose, key);
+            let taken = model.taken(id, &checked, pose, key, first);
             model.slots.push(taken);
         }
         model.space = filling.space();
@@ -95,11 +96,18 @@ impl Model {
     }
 
     /// Makes the slot of an element whose pieces are already in the model; stores its name and its enclosed spaces.
-    #[inline]
-    fn taken(&mut self, id: &str, shape: &Shape, pose: &Pose, key: ElementKey, first: u32) -> Slot {
-        let interior = match shape {
-            Shape::Block { .. } | Shape::Cylinder { .. } => None,
-            Shape::Compound(_) | Shape::Mesh(_) => self.interior(shape, pose, key.slot),
+    #[inline(always)]
+    fn taken(
+        &mut self,
+        id: &str,
+        checked: &Checked<'_>,
+        pose: &Pose,
+        key: ElementKey,
+        first: u32,
+    ) -> Slot {
+        let interior = match checked.single {
+            Some(_) => None,
+            None => self.interior(checked.shape, pose, key.slot),
         };
         Slot {
             generation: key.generation,
@@ -132,8 +140,9 @@ impl Model {
             self.hollow.retain(|known| *known != key.slot);
         }
         while piece != NONE {
-            self.space.remove(piece, &self.pieces.at(piece).cover());
-            piece = self.pieces.remove(piece);
+            let (cover, next) = self.pieces.remove(piece);
+            self.space.remove(piece, &cover);
+            piece = next;
         }
         self.free.push(key.slot);
         if self.names.is_mostly_gaps() {

@@ -35,13 +35,14 @@ impl Names {
     }
 
     /// Releases a name.
+    #[inline]
     pub(crate) fn release(&mut self, name: &Name) {
-        self.gaps += name.length as usize;
         // The last name leaves no gap, so that inserting and removing one element again and again does not grow the
         // text.
         if (name.start + name.length) as usize == self.text.len() {
             self.text.truncate(name.start as usize);
-            self.gaps -= name.length as usize;
+        } else {
+            self.gaps += name.length as usize;
         }
     }
 

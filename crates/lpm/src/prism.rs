@@ -3,7 +3,7 @@
 
 use super::piece::{Form, NOISE, Piece, is_exact_sum};
 use super::pose::{Frame, Pose, Yaw};
-use super::shape::Shape;
+use super::shape::{self, Flaw, Shape};
 use super::vector::{Vec3, add, reach};
 
 /// An upright block or cylinder, reduced to the numbers that closed forms need.
@@ -20,6 +20,52 @@ pub(crate) struct Prism {
     pub(crate) span: f64,
 }
 
+/// A single block or cylinder, reduced to the numbers of its [`Prism`] that do not depend on its place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Single {
+    half: Vec3,
+    radius: f64,
+    span: f64,
+}
+
+/// A shape that [`Shape::check`] accepts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Checked<'a> {
+    pub(crate) shape: &'a Shape,
+    /// The shape as a single block or cylinder; `None` for any other shape.
+    pub(crate) single: Option<Single>,
+}
+
+impl Checked<'_> {
+    /// Checks a shape.
+    ///
+    /// # Errors
+    /// Fails as [`Shape::check`] does.
+    #[inline(always)]
+    pub(crate) fn of(shape: &Shape) -> Result<Checked<'_>, Flaw> {
+        // Nearly every element is a single body; one look at its kind serves check and conversion.
+        let single = match shape {
+            Shape::Block { half } if shape::are_sizes(*half) => Single {
+                half: *half,
+                radius: 0.0,
+                span: reach(*half),
+            },
+            Shape::Cylinder { radius, height } if shape::are_sizes([*radius, *height]) => Single {
+                half: [0.0, 0.0, height / 2.0],
+                radius: *radius,
+                span: 2.0 * radius + height,
+            },
+            _ => {
+                shape.check()?;
+                let single = None;
+                return Ok(Checked { shape, single });
+            }
+        };
+        let single = Some(single);
+        Ok(Checked { shape, single })
+    }
+}
+
 impl Prism {
     /// Converts a piece, which must be upright.
     #[inline]
@@ -34,17 +80,10 @@ impl Prism {
         }
     }
 
-    /// Converts a single block or cylinder; returns `None` for any other shape, and for one that is not upright at
-    /// `pose`.
-    #[inline]
-    pub(crate) fn standing(shape: &Shape, pose: &Pose) -> Option<Prism> {
-        let (half, radius, span) = match shape {
-            Shape::Block { half } => (*half, 0.0, reach(*half)),
-            Shape::Cylinder { radius, height } => {
-                ([0.0, 0.0, height / 2.0], *radius, 2.0 * radius + height)
-            }
-            Shape::Compound(_) | Shape::Mesh(_) => return None,
-        };
+    /// Places a single block or cylinder; returns `None` when it is not upright at `pose`.
+    #[inline(always)]
+    pub(crate) fn standing(single: &Single, pose: &Pose) -> Option<Prism> {
+        let Single { half, radius, span } = *single;
         let [w, x, y, z] = pose.rotation;
         if (x != 0.0) | (y != 0.0) {
             return None;

@@ -104,8 +104,8 @@ impl Shape {
     pub fn check(&self) -> Result<(), Flaw> {
         match self {
             // Decides the common case first, without building strings for paths.
-            Shape::Block { half: [a, b, c] } if is_size(a) & is_size(b) & is_size(c) => Ok(()),
-            Shape::Cylinder { radius, height } if is_size(radius) & is_size(height) => Ok(()),
+            Shape::Block { half } if are_sizes(*half) => Ok(()),
+            Shape::Cylinder { radius, height } if are_sizes([*radius, *height]) => Ok(()),
             _ => check_shape(self, "", 0),
         }
     }
@@ -228,9 +228,17 @@ pub(crate) fn is_turn(squared: f64) -> bool {
     is_between(squared, [1e-200, 1e200])
 }
 
+/// Returns true when [`Shape::check`] accepts all of these sizes.
 #[inline(always)]
-fn is_size(found: &f64) -> bool {
-    is_between(*found, [0.0, LARGEST_COORDINATE_MM])
+pub(crate) fn are_sizes<const N: usize>(found: [f64; N]) -> bool {
+    found
+        .into_iter()
+        .fold(true, |sound, size| sound & is_size(size))
+}
+
+#[inline(always)]
+fn is_size(found: f64) -> bool {
+    is_between(found, [0.0, LARGEST_COORDINATE_MM])
 }
 
 /// Returns true when a number lies above the first bound, which is not negative, and is at most the second. One
@@ -243,7 +251,7 @@ fn is_between(found: f64, [above, most]: [f64; 2]) -> bool {
 }
 
 fn check_size(found: f64, path: impl Fn() -> String) -> Result<(), Flaw> {
-    if is_size(&found) {
+    if is_size(found) {
         Ok(())
     } else {
         Err(Flaw::Size {

@@ -6,7 +6,7 @@
 use super::answer::ElementKey;
 use super::piece::{Piece, each_piece};
 use super::pose::{Frame, Pose};
-use super::prism::Prism;
+use super::prism::{Checked, Prism};
 use super::shape::Shape;
 use super::space::{Cover, Entering};
 
@@ -17,8 +17,11 @@ pub(crate) const NONE: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Stationary {
-    /// Least and greatest corner of the box around the piece, mm.
-    corners: [[f32; 3]; 2],
+    /// The box around the piece, mm: least x and y, then greatest x and y. They are written and read as one, because a
+    /// read that spans two recent writes stalls the processor.
+    footprint: [f32; 4],
+    /// Least and greatest z of the box around the piece, mm.
+    heights: [f32; 2],
     pub(crate) form: Stored,
     /// The element to which the piece belongs.
     pub(crate) owner: ElementKey,
@@ -32,8 +35,11 @@ impl Stationary {
     /// Returns the box around the piece.
     #[inline(always)]
     pub(crate) fn cover(&self) -> Cover {
-        let [low, high] = self.corners.map(|[x, y, z]| [x, y, z, 0.0]);
-        Cover { low, high }
+        let ([left, front, right, back], [bottom, top]) = (self.footprint, self.heights);
+        Cover {
+            low: [left, front, bottom, 0.0],
+            high: [right, back, top, 0.0],
+        }
     }
 }
 
@@ -56,21 +62,35 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// Adds the pieces of a checked shape and enters their boxes into `space`. Returns the number of the first piece in
+    /// Adds the pieces of a shape and enters their boxes into `space`. Returns the number of the first piece in
     /// their chain of siblings.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn insert(
+        &mut self,
+        space: &mut impl Entering,
+        checked: &Checked<'_>,
+        pose: &Pose,
+        owner: ElementKey,
+    ) -> u32 {
+        // Nearly every element is one upright block or cylinder and needs no general piece.
+        let single = checked.single.as_ref();
+        if let Some(prism) = single.and_then(|single| Prism::standing(single, pose)) {
+            let cover = Cover::of(prism.bounds());
+            return self.enter(space, Stored::Upright(prism), &cover, owner, NONE);
+        }
+        self.insert_pieces(space, checked.shape, pose, owner)
+    }
+
+    /// Adds the pieces of a shape that is not a single upright body.
+    #[cold]
+    #[inline(never)]
+    fn insert_pieces(
         &mut self,
         space: &mut impl Entering,
         shape: &Shape,
         pose: &Pose,
         owner: ElementKey,
     ) -> u32 {
-        // Nearly every element is one upright block or cylinder and needs no general piece.
-        if let Some(prism) = Prism::standing(shape, pose) {
-            let cover = Cover::of(prism.bounds());
-            return self.enter(space, Stored::Upright(prism), &cover, owner, NONE);
-        }
         let frame = Frame::of(pose.rotation);
         let mut first = NONE;
         each_piece(shape, |piece| {
@@ -96,7 +116,8 @@ impl Pieces {
         sibling: u32,
     ) -> u32 {
         let stationary = Stationary {
-            corners: [cover.low, cover.high].map(|[x, y, z, _]| [x, y, z]),
+            footprint: [cover.low[0], cover.low[1], cover.high[0], cover.high[1]],
+            heights: [cover.low[2], cover.high[2]],
             form,
             owner,
             sibling,
@@ -106,14 +127,15 @@ impl Pieces {
         number
     }
 
-    /// Removes a piece and returns the number of the next piece of its element.
-    #[inline]
-    pub(crate) fn remove(&mut self, number: u32) -> u32 {
-        if let Stored::Askew(whole) = self.at(number).form {
+    /// Removes a piece; returns the box around it and the number of the next piece of its element.
+    #[inline(always)]
+    pub(crate) fn remove(&mut self, number: u32) -> (Cover, u32) {
+        let gone = &self.pieces[number as usize];
+        if let Stored::Askew(whole) = gone.form {
             self.free_askew.push(whole);
         }
         self.free.push(number);
-        self.at(number).sibling
+        (gone.cover(), gone.sibling)
     }
 
     #[inline]

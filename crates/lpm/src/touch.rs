@@ -261,6 +261,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::distance::tests::Dice;
+    use crate::prism::Checked;
     use crate::vector::{along, length};
     use crate::{Pose, Shape};
 
@@ -281,7 +282,8 @@ mod tests {
         } else {
             3.0 * dice.signed()
         };
-        Prism::standing(&shape, &Pose::yawed(dice.vector(), yaw)).unwrap()
+        let single = Checked::of(&shape).unwrap().single.unwrap();
+        Prism::standing(&single, &Pose::yawed(dice.vector(), yaw)).unwrap()
     }
 
     fn depth(element: &Prism, mover: &Prism, n: Vec3) -> f64 {
