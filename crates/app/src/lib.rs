@@ -180,11 +180,12 @@ pub fn block_on<T>(
 pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
     let mut builder = match source.is_virtual() {
         true => virtual_time::builder(),
-        false => tokio::runtime::Builder::new_current_thread(),
+        false => {
+            let mut real = tokio::runtime::Builder::new_current_thread();
+            real.enable_all();
+            real
+        }
     };
-    if !source.is_virtual() {
-        builder.enable_all();
-    }
     let built = builder.max_blocking_threads(1).build();
     built.context("starting the runtime")
 }
